@@ -1,0 +1,33 @@
+#pragma once
+// The shape of the problem as a person describes it: terrain and slide.
+
+#include <vector>
+
+#include "math/vec2.hpp"
+
+namespace talus {
+
+/// The rigid ground. An open bed runs from left to right, the soil lies above it; a closed one is a ring that is walked
+/// counter-clockwise and holds the soil inside.
+struct Terrain {
+  std::vector<Vec2> bed;       ///< vertices [m]; open: x strictly increasing; closed: first vertex not repeated at the end
+  bool closed = false;         ///< the bed is a ring
+  bool left_wall = true;       ///< a vertical wall stands on the first bed vertex
+  bool right_wall = false;     ///< a vertical wall stands on the last bed vertex
+  double wall_top = 0.0;       ///< y of the top of the end walls [m]
+  double left_boundary = 0.0;  ///< x from which influence zones are measured [m]
+};
+
+/// A closed outline of soil of one material. Outlines of one slide do not overlap.
+struct SlidePart {
+  std::vector<Vec2> outline;  ///< vertices [m], first vertex not repeated at the end, either orientation
+  int material = 0;           ///< index into Model::materials
+};
+
+/// Where the particles stand relative to the outlines.
+enum class Placement {
+  cells,  ///< centres of square cells that tile the plane: a particle stays spacing/2 away from the wall
+  nodes,  ///< nodes of the lattice, edges included, as in [Z20] Fig. 3: the wall line lies spacing/2 behind the bed
+};
+
+}  // namespace talus

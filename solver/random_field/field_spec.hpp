@@ -1,0 +1,35 @@
+#pragma once
+// What random field of the friction angle a study asks for.
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "math/vec2.hpp"
+
+namespace talus {
+
+enum class FieldDirection { xy, x, y };  ///< two-dimensional, or varying along one axis only
+enum class Truncation { largest, diagonal, variance_share };
+enum class RootIntervals { complete, paper };  ///< each mode once | [Z20] Eqs. 15, 21 as printed: modes 1 4 5 8 9 ...
+enum class FieldSampler { karhunen_loeve, circulant_embedding };
+
+/// ln(tan phi) = mu + sigma Z(x), Z a standard Gaussian field with covariance exp(-|dx|/ell_x - |dy|/ell_y). [Z20] Eqs. 11-23.
+struct FieldSpec {
+  FieldDirection direction = FieldDirection::xy;
+  double ell_x = 1.0;                ///< correlation length along x [m], > 0 (half the scale of fluctuation)
+  double ell_y = 1.0;                ///< correlation length along y [m], > 0
+  std::optional<double> mu;          ///< mean of ln(tan phi) [-]; unset: ln(tan phi) of each particle's material
+  double sigma = 0.0;                ///< standard deviation of ln(tan phi) [-]; a negative one mirrors the draws
+  FieldSampler sampler = FieldSampler::karhunen_loeve;
+  Truncation truncation = Truncation::largest;
+  int terms = 5;                     ///< M of [Z20] Eq. 11, >= 1; for `largest` and `diagonal`
+  double variance_share = 0.95;      ///< for `variance_share`, in (0, 1)
+  RootIntervals root_intervals = RootIntervals::complete;
+  bool cell_average = false;         ///< average the field over each particle's cell dx by dx
+  std::optional<Box> domain;         ///< where the modes are solved [m]; unset: the bounding box of the slide
+  std::vector<double> xi;            ///< given standard normal coefficients instead of drawn ones; empty: drawn
+  std::optional<double> grid_spacing;  ///< grid of the circulant embedding [m]; unset: min(ell)/4 or dx, whichever is smaller
+};
+
+}  // namespace talus

@@ -1,0 +1,44 @@
+#pragma once
+// Random fields of tan(phi): [Z20] Eqs. 11-23. Knows no particle, maps points to values.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "math/vec2.hpp"
+#include "random_field/field_spec.hpp"
+
+namespace talus {
+
+/// A standard Gaussian field Z(x) prepared for sampling: modes solved (Karhunen-Loeve) or spectrum known (circulant embedding).
+class RandomField {
+ public:
+  /// @param spec    what is wanted; `spec.domain` overrides `slide_box`
+  /// @param slide_box  bounding box of the slide [m]
+  /// @param dx      particle spacing [m], for `cell_average` and the default grid
+  /// @throws ConfigError (pointer under /random_field) when the domain has no extent or the embedding is impossible
+  RandomField(const FieldSpec& spec, Box slide_box, double dx);
+  ~RandomField();
+  RandomField(RandomField&&) noexcept;
+  RandomField& operator=(RandomField&&) noexcept;
+
+  /// Number of standard normal coefficients xi that a sample takes.
+  std::size_t terms() const;
+  /// Share of the field's variance that the modes carry, averaged over the domain, in (0, 1]; 1 for circulant embedding
+  /// [- , Karhunen-Loeve: sum lambda / (2 a_x 2 a_y)].
+  double captured_variance() const;
+  /// Coefficients of one realization: counter-based (Philox), keyed by (seed, realization, mode); never depend on anything else.
+  std::vector<double> draw(std::uint64_t seed, std::uint64_t realization) const;
+  /// Z at points [-]; `xi` has terms() entries. Points outside the domain take the modes' analytic continuation.
+  std::vector<double> gaussian(std::span<const Vec2> points, std::span<const double> xi) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// tan(phi) = exp(mu + sigma Z). [Z20] Eq. 12; mu is a value for every point, or one for all.
+std::vector<double> lognormal(std::span<const double> gaussian, std::span<const double> mu, double sigma);
+
+}  // namespace talus

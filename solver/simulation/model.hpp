@@ -1,0 +1,43 @@
+#pragma once
+// Everything that a deterministic run needs to know.
+
+#include <optional>
+#include <vector>
+
+#include "material/material.hpp"
+#include "particles/geometry_input.hpp"
+#include "sph/numerics.hpp"
+
+namespace talus {
+
+/// When the run counts as come to rest.
+struct StopAtRest {
+  double speed = 0.01;  ///< root-mean-square speed below which the slide rests [m/s], > 0
+  double hold = 0.5;    ///< for how long it must stay below [s], >= 0
+};
+
+/// When to stop and what to keep.
+struct TimeControl {
+  double end = 10.0;                     ///< [s], > 0
+  std::optional<double> fixed_step;      ///< constant time step [s]; unset: from the Courant number
+  std::optional<double> max_step;        ///< upper bound of the Courant step [s]
+  std::vector<double> snapshots;         ///< times [s], increasing, in [0, end]; start and end are always kept
+  std::optional<StopAtRest> stop_at_rest;
+};
+
+/// A deterministic problem in SI units and radians. `case/` makes it from JSON.
+struct Model {
+  Terrain terrain;
+  std::vector<SlidePart> slide;
+  std::vector<Material> materials;  ///< at least one
+  double dx = 0.1;                  ///< particle spacing [m], > 0
+  Placement placement = Placement::cells;
+  Vec2 g{0.0, -9.81};               ///< gravity [m/s2]
+  Rheology rheology;
+  Numerics numerics;
+  Walls walls;
+  TimeControl time;
+  std::size_t max_particles = 4'000'000;  ///< refuse to fill more than this
+};
+
+}  // namespace talus

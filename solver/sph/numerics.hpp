@@ -1,0 +1,52 @@
+#pragma once
+// The choices of the method: one enumeration a choice, the sound one first.
+
+#include <optional>
+
+namespace talus {
+
+enum class ShearRate { consistent, paper };             ///< sqrt(2 dev:dev) | sqrt(2/3 dev:dev), [Z20] Eq. 7 as printed
+enum class Yield { elastic, regularized };              ///< elasto-viscoplastic | equivalent viscosity, [Z20] Eq. 6
+enum class WallContact { always, approaching };         ///< approaching: a wall acts only where v_ij . x_ij < 0, [Z20] 2.1
+enum class WallSlip { no_slip, friction, free_slip };   ///< friction: the soil's own, or a smaller angle of the wall
+enum class KernelShape { cubic_spline, wendland_c2 };
+enum class DensityFilter { shepard, delta_sph, none };
+enum class Integrator { rk2, leapfrog };
+enum class Continuity { volume, mass };                 ///< rho_i sum V_j | sum m_j, [Z20] Eq. 1; equal where density is uniform
+enum class InitialPressure { hydrostatic, stress_free };
+
+/// How the soil yields.
+struct Rheology {
+  ShearRate shear_rate = ShearRate::consistent;
+  Yield yield = Yield::elastic;
+  double gamma_dot_min = 1e-3;  ///< floor of the shear rate of the regularised law [1/s], > 0; [Z20] uses 1e-3
+  std::optional<double> G;      ///< numerical shear modulus of the elastic law [Pa], > 0; unset: 0.1 rho0 c_s^2
+};
+
+/// How the equations are discretised.
+struct Numerics {
+  KernelShape kernel = KernelShape::cubic_spline;
+  double h_over_dx = 1.2;                ///< smoothing length over particle spacing [-], in [1, 2]
+  std::optional<double> c_s;             ///< speed of sound [m/s], > 0; unset: 10 sqrt(2 g H)
+  double alpha = 0.1;                    ///< artificial viscosity, linear term [-], >= 0
+  double beta = 0.0;                     ///< artificial viscosity, quadratic term [-], >= 0
+  Continuity continuity = Continuity::volume;
+  DensityFilter density_filter = DensityFilter::shepard;
+  int filter_interval = 30;              ///< steps between two Shepard filters, >= 1
+  double delta = 0.1;                    ///< coefficient of the delta-SPH diffusion [-], >= 0
+  bool tension_cutoff = true;            ///< negative pressure is cut to zero
+  InitialPressure initial_pressure = InitialPressure::hydrostatic;
+  Integrator integrator = Integrator::rk2;
+  double cfl = 0.25;                     ///< Courant number [-], in (0, 1]
+};
+
+/// How the walls act.
+struct Walls {
+  WallContact contact = WallContact::always;
+  WallSlip slip = WallSlip::no_slip;
+  double phi = 0.0;    ///< friction angle of the wall, used with WallSlip::friction [rad], in [0, pi/2)
+  double b_max = 1.5;  ///< largest ratio of mirrored velocity [-], >= 1; [Morris 1997] 1.5
+  int layers = 3;      ///< layers of wall particles, enough to fill the support 2h
+};
+
+}  // namespace talus
