@@ -1,0 +1,48 @@
+// talus: one verb a file; errors become exit codes here and nowhere else.
+
+#include <exception>
+#include <iostream>
+
+#include "cli/verbs.hpp"
+#include "cli/version.hpp"
+
+namespace {
+
+int report(talus::Exit code, const std::string& text) {
+  std::cerr << text << (text.ends_with('\n') ? "" : "\n");
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using talus::Exit;
+  CLI::App app{"Talus: how far will it run, and how sure are we?", "talus"};
+  app.set_version_flag("--version", talus::cli::version_text());
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 ok, 1 internal, 2 usage, 3 bad case, 4 diverged, 5 input/output, 6 stopped with a checkpoint, 7 too many failed runs");
+  talus::cli::Action action;
+  talus::cli::add_validate(app, action);
+  talus::cli::add_run(app, action);
+  talus::cli::add_field(app, action);
+  talus::cli::add_study(app, action);
+  talus::cli::add_stats(app, action);
+  talus::cli::add_plot(app, action);
+  talus::cli::add_schema(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? static_cast<int>(Exit::ok) : static_cast<int>(Exit::usage);
+  }
+  try {
+    return action ? static_cast<int>(action()) : static_cast<int>(Exit::usage);
+  } catch (const talus::ConfigError& e) {
+    return report(Exit::bad_case, e.what());
+  } catch (const talus::DivergedError& e) {
+    return report(Exit::diverged, e.what());
+  } catch (const talus::IoError& e) {
+    return report(Exit::io, e.what());
+  } catch (const std::exception& e) {
+    return report(Exit::internal, std::string("internal error: ") + e.what());
+  }
+}

@@ -1,0 +1,7 @@
+#include "cli/verbs.hpp"
+
+namespace talus::cli {
+
+void add_run(CLI::App& app, Action&) { app.add_subcommand("run"); }
+
+}  // namespace talus::cli

@@ -1,0 +1,7 @@
+#include "cli/verbs.hpp"
+
+namespace talus::cli {
+
+void add_validate(CLI::App& app, Action&) { app.add_subcommand("validate"); }
+
+}  // namespace talus::cli

@@ -1,0 +1,23 @@
+#pragma once
+// The verbs of the command line: each adds its subcommand and, once chosen, sets the action to carry out.
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+#include "math/error.hpp"
+
+namespace talus::cli {
+
+/// What the chosen verb does; may throw ConfigError, DivergedError, IoError (main maps them to exit codes).
+using Action = std::function<Exit()>;
+
+void add_validate(CLI::App& app, Action& action);
+void add_run(CLI::App& app, Action& action);
+void add_field(CLI::App& app, Action& action);
+void add_study(CLI::App& app, Action& action);
+void add_stats(CLI::App& app, Action& action);
+void add_plot(CLI::App& app, Action& action);
+void add_schema(CLI::App& app, Action& action);
+
+}  // namespace talus::cli
