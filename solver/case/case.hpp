@@ -16,6 +16,7 @@ struct Case {
   Model model;
   std::optional<FieldSpec> field;  ///< unset: the friction angle is that of the material
   StudySpec study;
+  bool operator==(const Case&) const = default;
 };
 
 }  // namespace talus

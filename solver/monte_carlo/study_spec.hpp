@@ -18,6 +18,7 @@ struct StudySpec {
   std::optional<double> stop_half_width;  ///< stop once the 95 % interval of the mean influence zone is this narrow [m]
   double max_failed_share = 0.1;          ///< more failures than this end the study with exit code 7, in [0, 1]
   std::vector<double> histogram_edges;    ///< [m], increasing; empty: chosen from the data at round numbers
+  bool operator==(const StudySpec&) const = default;
 };
 
 }  // namespace talus

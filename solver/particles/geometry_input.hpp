@@ -16,12 +16,14 @@ struct Terrain {
   bool right_wall = false;     ///< a vertical wall stands on the last bed vertex
   double wall_top = 0.0;       ///< y of the top of the end walls [m]
   double left_boundary = 0.0;  ///< x from which influence zones are measured [m]
+  bool operator==(const Terrain&) const = default;
 };
 
 /// A closed outline of soil of one material. Outlines of one slide do not overlap.
 struct SlidePart {
   std::vector<Vec2> outline;  ///< vertices [m], first vertex not repeated at the end, either orientation
   int material = 0;           ///< index into Model::materials
+  bool operator==(const SlidePart&) const = default;
 };
 
 /// Where the particles stand relative to the outlines.

@@ -30,6 +30,7 @@ struct FieldSpec {
   std::optional<Box> domain;         ///< where the modes are solved [m]; unset: the bounding box of the slide
   std::vector<double> xi;            ///< given standard normal coefficients instead of drawn ones; empty: drawn
   std::optional<double> grid_spacing;  ///< grid of the circulant embedding [m]; unset: min(ell)/4 or dx, whichever is smaller
+  bool operator==(const FieldSpec&) const = default;
 };
 
 }  // namespace talus

@@ -14,6 +14,7 @@ namespace talus {
 struct StopAtRest {
   double speed = 0.01;  ///< root-mean-square speed below which the slide rests [m/s], > 0
   double hold = 0.5;    ///< for how long it must stay below [s], >= 0
+  bool operator==(const StopAtRest&) const = default;
 };
 
 /// When to stop and what to keep.
@@ -23,6 +24,7 @@ struct TimeControl {
   std::optional<double> max_step;        ///< upper bound of the Courant step [s]
   std::vector<double> snapshots;         ///< times [s], increasing, in [0, end]; start and end are always kept
   std::optional<StopAtRest> stop_at_rest;
+  bool operator==(const TimeControl&) const = default;
 };
 
 /// A deterministic problem in SI units and radians. `case/` makes it from JSON.
@@ -38,6 +40,7 @@ struct Model {
   Walls walls;
   TimeControl time;
   std::size_t max_particles = 4'000'000;  ///< refuse to fill more than this
+  bool operator==(const Model&) const = default;
 };
 
 }  // namespace talus

@@ -21,6 +21,7 @@ struct Rheology {
   Yield yield = Yield::elastic;
   double gamma_dot_min = 1e-3;  ///< floor of the shear rate of the regularised law [1/s], > 0; [Z20] uses 1e-3
   std::optional<double> G;      ///< numerical shear modulus of the elastic law [Pa], > 0; unset: 0.1 rho0 c_s^2
+  bool operator==(const Rheology&) const = default;
 };
 
 /// How the equations are discretised.
@@ -38,6 +39,7 @@ struct Numerics {
   InitialPressure initial_pressure = InitialPressure::hydrostatic;
   Integrator integrator = Integrator::rk2;
   double cfl = 0.25;                     ///< Courant number [-], in (0, 1]
+  bool operator==(const Numerics&) const = default;
 };
 
 /// How the walls act.
@@ -47,6 +49,7 @@ struct Walls {
   double phi = 0.0;    ///< friction angle of the wall, used with WallSlip::friction [rad], in [0, pi/2)
   double b_max = 1.5;  ///< largest ratio of mirrored velocity [-], >= 1; [Morris 1997] 1.5
   int layers = 3;      ///< layers of wall particles, enough to fill the support 2h
+  bool operator==(const Walls&) const = default;
 };
 
 }  // namespace talus
