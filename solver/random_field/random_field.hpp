@@ -28,9 +28,19 @@ class RandomField {
   /// Share of the field's variance that the modes carry, averaged over the domain, in (0, 1]; 1 for circulant embedding
   /// [- , Karhunen-Loeve: sum lambda / (2 a_x 2 a_y)].
   double captured_variance() const;
-  /// Coefficients of one realization: counter-based (Philox), keyed by (seed, realization, mode); never depend on anything else.
+  /// Variance of the values that gaussian() returns, averaged over the domain [-]: captured_variance() less what
+  /// `cell_average` takes away.
+  double variance() const;
+  /// Coefficients of one realization: counter-based (Philox), keyed by (seed, realization, mode); never depend on anything
+  /// else. With `spec.xi`, those.
   std::vector<double> draw(std::uint64_t seed, std::uint64_t realization) const;
-  /// Z at points [-]; `xi` has terms() entries. Points outside the domain take the modes' analytic continuation.
+  /// The same with the `modes` leading coefficients (or all, if there are fewer) from a Latin hypercube sample of
+  /// `realizations` realizations. Of use for Karhunen-Loeve, whose leading modes carry most; harmless else.
+  std::vector<double> draw_stratified(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization,
+                                      std::size_t modes) const;
+  /// Z at points [-]; `xi` has terms() entries (else std::invalid_argument). Points outside the domain take the modes'
+  /// analytic continuation; with circulant embedding the value at the domain's nearest point. Safe to call from several
+  /// threads at once.
   std::vector<double> gaussian(std::span<const Vec2> points, std::span<const double> xi) const;
 
  private:

@@ -1,0 +1,64 @@
+#include "random_field/stream.hpp"
+
+#include <Random123/philox.h>
+
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+namespace talus {
+namespace {
+
+std::uint32_t low(std::uint64_t word) { return static_cast<std::uint32_t>(word); }
+std::uint32_t high(std::uint64_t word) { return static_cast<std::uint32_t>(word >> 32); }
+
+/// The middle of one of 2^52 equal intervals of (0, 1): neither 0 nor 1 can come out.
+double unit(std::uint32_t lo, std::uint32_t hi) {
+  const std::uint64_t word = (static_cast<std::uint64_t>(hi) << 32) | lo;
+  return (static_cast<double>(word >> 12) + 0.5) * 0x1p-52;
+}
+
+/// Place of `realization` in a random permutation of 0 .. realizations-1 (Fisher & Yates), one permutation per mode.
+std::uint64_t stratum(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization, std::uint32_t mode) {
+  std::vector<std::uint64_t> strata(realizations);
+  std::iota(strata.begin(), strata.end(), std::uint64_t{0});
+  for (std::uint64_t n = realizations - 1; n > 0; --n) {
+    const double u = uniforms(seed, n, mode, Stream::strata)[0];
+    std::swap(strata[n], strata[static_cast<std::uint64_t>(u * static_cast<double>(n + 1))]);
+  }
+  return strata[realization];
+}
+
+}  // namespace
+
+std::array<double, 2> uniforms(std::uint64_t seed, std::uint64_t index, std::uint32_t mode, Stream stream) {
+  const r123::Philox4x32::key_type key = {{low(seed), high(seed)}};
+  const r123::Philox4x32::ctr_type counter = {{mode, static_cast<std::uint32_t>(stream), low(index), high(index)}};
+  const r123::Philox4x32::ctr_type words = r123::Philox4x32()(counter, key);
+  return {unit(words[0], words[1]), unit(words[2], words[3])};
+}
+
+double standard_normal(std::uint64_t seed, std::uint64_t realization, std::uint32_t mode) {
+  const auto [u, v] = uniforms(seed, realization, mode, Stream::field);
+  return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
+}
+
+std::vector<double> stratified_normals(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization,
+                                       std::size_t modes) {
+  if (realization >= realizations) throw std::invalid_argument("stratified_normals: no such realization");
+  const boost::math::normal_distribution<double> normal;
+  std::vector<double> xi(modes);
+  for (std::size_t k = 0; k < modes; ++k) {
+    const auto mode = static_cast<std::uint32_t>(k);
+    const double place = static_cast<double>(stratum(seed, realizations, realization, mode));
+    const double jitter = uniforms(seed, realization, mode, Stream::jitter)[0];
+    const double p = (place + jitter) / static_cast<double>(realizations);
+    xi[k] = quantile(normal, std::min(p, std::nextafter(1.0, 0.0)));
+  }
+  return xi;
+}
+
+}  // namespace talus

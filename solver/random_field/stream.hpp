@@ -1,0 +1,30 @@
+#pragma once
+// Counter-based random numbers: a draw is a pure function of what it is for, so it never depends on how many others
+// were taken, on threads or on order. Philox4x32-10 (Salmon, Moraes, Dror & Shaw 2011) from Random123.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace talus {
+
+/// What a draw is for; draws of different streams are independent.
+enum class Stream : std::uint32_t { field = 0, strata = 1, jitter = 2 };
+
+/// Two independent uniform numbers in the open interval (0, 1), of 52 bits each.
+/// @param index  realization, or place in a permutation
+/// @param mode   number of the coefficient
+std::array<double, 2> uniforms(std::uint64_t seed, std::uint64_t index, std::uint32_t mode, Stream stream);
+
+/// The standard normal coefficient of a mode of a realization (Box & Muller 1958).
+double standard_normal(std::uint64_t seed, std::uint64_t realization, std::uint32_t mode);
+
+/// Latin hypercube sample of the `modes` leading coefficients (McKay, Beckman & Conover 1979): over the realizations
+/// 0 .. realizations-1, each coefficient falls once in each of as many intervals of equal probability. Modes are paired
+/// at random. Depends on the number of realizations by nature. Takes O(realizations) time a mode.
+/// @throws std::invalid_argument unless realization < realizations
+std::vector<double> stratified_normals(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization,
+                                       std::size_t modes);
+
+}  // namespace talus
