@@ -10,7 +10,7 @@ enum class Yield { elastic, regularized };              ///< elasto-viscoplastic
 enum class WallContact { always, approaching };         ///< approaching: a wall acts only where v_ij . x_ij < 0, [Z20] 2.1
 enum class WallSlip { no_slip, friction, free_slip };   ///< friction: the soil's own, or a smaller angle of the wall
 enum class KernelShape { cubic_spline, wendland_c2 };
-enum class DensityFilter { shepard, delta_sph, none };
+enum class DensityFilter { delta_sph, shepard, none };
 enum class Integrator { rk2, leapfrog };
 enum class Continuity { volume, mass };                 ///< rho_i sum V_j | sum m_j, [Z20] Eq. 1; equal where density is uniform
 enum class InitialPressure { hydrostatic, stress_free };
@@ -32,13 +32,15 @@ struct Numerics {
   double alpha = 0.1;                    ///< artificial viscosity, linear term [-], >= 0
   double beta = 0.0;                     ///< artificial viscosity, quadratic term [-], >= 0
   Continuity continuity = Continuity::volume;
-  DensityFilter density_filter = DensityFilter::shepard;
+  /// The diffusion leaves a resting pile alone and keeps replicate runs together: on the illustrative slope at dx = 0.4 m a
+  /// change of tan(phi) by 1e-6 moves the front by 1e-4 m with it and by 0.07 m with the Shepard filter.
+  DensityFilter density_filter = DensityFilter::delta_sph;
   int filter_interval = 30;              ///< steps between two Shepard filters, >= 1
   double delta = 0.1;                    ///< coefficient of the delta-SPH diffusion [-], >= 0
   bool tension_cutoff = true;            ///< negative pressure is cut to zero
   InitialPressure initial_pressure = InitialPressure::hydrostatic;
   Integrator integrator = Integrator::rk2;
-  double cfl = 0.25;                     ///< Courant number [-], in (0, 1]
+  double cfl = 0.4;                      ///< Courant number [-], in (0, 1]
   bool operator==(const Numerics&) const = default;
 };
 

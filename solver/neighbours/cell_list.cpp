@@ -1,0 +1,44 @@
+#include "neighbours/cell_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+namespace {
+// A stray particle far away must not blow the grid up: beyond this many cells the grid stops and the rest is clamped into its border.
+constexpr std::int64_t max_cells_per_axis = 16384;
+}  // namespace
+
+void CellList::build(std::span<const double> x, std::span<const double> y, double reach) {
+  const std::size_t n = x.size();
+  inverse_cell_ = 2.0 / reach;
+  order_.resize(n);
+  cell_of_.resize(n);
+  if (n == 0) {
+    columns_ = rows_ = 1;
+    starts_.assign(2, 0);
+    return;
+  }
+  const auto [x_lo, x_hi] = std::minmax_element(x.begin(), x.end());
+  const auto [y_lo, y_hi] = std::minmax_element(y.begin(), y.end());
+  lo_ = {*x_lo, *y_lo};
+  const auto cells = [&](double extent) {
+    const double c = std::floor(extent * inverse_cell_) + 1.0;
+    return c < static_cast<double>(max_cells_per_axis) ? static_cast<std::int64_t>(c) : max_cells_per_axis;
+  };
+  columns_ = cells(*x_hi - *x_lo);
+  rows_ = cells(*y_hi - *y_lo);
+  starts_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    cell_of_[i] = static_cast<std::uint32_t>(row(y[i]) * columns_ + column(x[i]));
+    ++starts_[cell_of_[i] + 1];
+  }
+  for (std::size_t c = 1; c < starts_.size(); ++c) starts_[c] += starts_[c - 1];
+  // Counting sort, stable; `starts_` is used as the running cursor and shifted back afterwards.
+  for (std::size_t i = 0; i < n; ++i) order_[starts_[cell_of_[i]]++] = static_cast<std::uint32_t>(i);
+  for (std::size_t c = starts_.size() - 1; c > 0; --c) starts_[c] = starts_[c - 1];
+  starts_[0] = 0;
+}
+
+}  // namespace talus

@@ -1,0 +1,283 @@
+#include "simulation/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "math/error.hpp"
+#include "simulation/observables.hpp"
+
+namespace talus {
+namespace {
+
+constexpr std::int64_t penetration_interval = 50;  ///< steps between two looks behind the walls
+
+FlowConstants flow_constants(const Model& model) {
+  const double c_s = sound_speed(model);
+  return {model.numerics.h_over_dx * model.dx, model.dx, c_s, model.g, model.rheology, model.numerics, model.walls,
+          point_laws(model.materials, model.rheology, c_s)};
+}
+
+/// Compression wave of the stiffest material: sqrt(c_s^2 + 4/3 G/rho0) with the elastic law, c_s otherwise.
+StepBounds step_bounds(const Model& model, const FlowConstants& k) {
+  StepBounds bounds{model.numerics.cfl, k.h, k.c_s, 0.0};
+  for (const PointLaw& law : k.laws) {
+    if (model.rheology.yield == Yield::elastic) bounds.c = std::max(bounds.c, std::sqrt(k.c_s * k.c_s + 4.0 / 3.0 * law.G / law.eos.rho0));
+    bounds.nu = std::max(bounds.nu, law.bingham.eta / law.eos.rho0);
+  }
+  return bounds;
+}
+
+Soil make_soil(const Model& model, const FlowConstants& k, const std::vector<SoilPoint>& points, const std::vector<double>& tan_phi) {
+  Soil soil;
+  for_each_real(soil, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
+  soil.material.resize(points.size());
+  soil.id.resize(points.size());
+  soil.n_active = points.size();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto material = static_cast<std::size_t>(points[i].material);
+    const Material& m = model.materials[material];
+    const bool loaded = model.numerics.initial_pressure == InitialPressure::hydrostatic;
+    const double p = loaded ? overburden(model.slide, model.materials, points[i].x) * std::abs(model.g.y) : 0.0;
+    soil.x[i] = points[i].x.x, soil.y[i] = points[i].x.y;
+    soil.rho[i] = k.laws[material].eos.density(p);
+    soil.m[i] = m.rho0 * model.dx * model.dx;
+    soil.tan_phi[i] = tan_phi.empty() ? std::tan(m.phi) : tan_phi[i];
+    soil.p[i] = p;
+    const Sym2 s = cauchy(p, {});
+    soil.sxx[i] = s.xx, soil.syy[i] = s.yy;
+    soil.material[i] = points[i].material;
+    soil.id[i] = static_cast<std::int32_t>(i);
+  }
+  return soil;
+}
+
+WallParticles make_walls(const std::vector<WallPoint>& points, double dx) {
+  WallParticles walls;
+  walls.volume = dx * dx;
+  for (const WallPoint& w : points) {
+    walls.x.push_back(w.x.x), walls.y.push_back(w.x.y);
+    walls.nx.push_back(w.n.x), walls.ny.push_back(w.n.y);
+    walls.depth.push_back(w.depth);
+  }
+  for_each_wall_real(walls, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
+  return walls;
+}
+
+}  // namespace
+
+ParticlePlan plan_particles(const Model& model) {
+  double estimate = 0.0;
+  for (const SlidePart& part : model.slide) estimate += area(part.outline) / (model.dx * model.dx);
+  const Polyline wall = wall_line(model.terrain, model.dx, model.placement);
+  const double wall_estimate = model.walls.layers * wall.length() / model.dx;
+  if (estimate + wall_estimate > static_cast<double>(model.max_particles))
+    throw ConfigError("/particle_spacing_m", "about " + std::to_string(static_cast<std::int64_t>(estimate + wall_estimate)) +
+                                                 " particles, more than the limit of " + std::to_string(model.max_particles) +
+                                                 " (max_particles); use a larger spacing");
+  ParticlePlan plan{fill_slide(model.slide, model.terrain, model.dx, model.placement), fill_walls(wall, model.dx, model.walls.layers)};
+  if (plan.soil.empty()) throw ConfigError("/particle_spacing_m", "no soil particle fits into the slide; use a smaller spacing");
+  return plan;
+}
+
+double fall_height(const Model& model) {
+  const Box box = bounding_box(model.slide);
+  double lowest = box.lo.y;
+  for (const Vec2& v : model.terrain.bed) lowest = std::min(lowest, v.y);
+  return box.hi.y - lowest;
+}
+
+double sound_speed(const Model& model) { return model.numerics.c_s.value_or(10.0 * std::sqrt(2.0 * norm(model.g) * fall_height(model))); }
+
+double first_step(const Model& model) {
+  if (model.time.fixed_step) return *model.time.fixed_step;
+  const double dt = courant_step(step_bounds(model, flow_constants(model)), 0.0, norm(model.g));
+  return model.time.max_step ? std::min(dt, *model.time.max_step) : dt;
+}
+
+Simulation::Simulation(const Model& model, const ParticlePlan& plan, std::vector<double> tan_phi)
+    : model_(model),
+      wall_line_(wall_line(model.terrain, model.dx, model.placement)),
+      rhs_(flow_constants(model)),
+      soil_(make_soil(model, rhs_.constants(), plan.soil, tan_phi)),
+      walls_(make_walls(plan.walls, model.dx)),
+      penetrated_(plan.soil.size(), 0),
+      bounds_(step_bounds(model, rhs_.constants())),
+      max_acceleration_(norm(model.g)),
+      height_(fall_height(model)) {
+  for (const SoilPoint& p : plan.soil) origin_.push_back(p.x);
+  wall_cells_.build(walls_.x, walls_.y, 2.0 * rhs_.constants().h);
+  const auto order = wall_cells_.order();
+  for (auto* array : {&walls_.x, &walls_.y, &walls_.nx, &walls_.ny, &walls_.depth}) permute(*array, order, scratch_);
+}
+
+double Simulation::choose_step(double until) const {
+  double dt = model_.time.fixed_step ? *model_.time.fixed_step : courant_step(bounds_, max_speed_, max_acceleration_);
+  if (model_.time.max_step && !model_.time.fixed_step) dt = std::min(dt, *model_.time.max_step);
+  // A rest shorter than a thousandth of a step is swallowed, so that rounding leaves no tiny step at the end.
+  const double rest = until - time_;
+  return rest < 1.001 * dt ? rest : dt;
+}
+
+void Simulation::sort(double reach) {
+  const std::size_t n = soil_.n_active;
+  soil_cells_.build(std::span(soil_.x).first(n), std::span(soil_.y).first(n), reach);
+  const auto order = soil_cells_.order();
+  for_each_real(soil_, [&](const char*, auto& array) { permute(array, order, scratch_); });
+  permute(soil_.material, order, scratch_int_);
+  permute(soil_.id, order, scratch_int_);
+}
+
+/// Soil that left through an open end stops taking part: it is swapped behind the active ones and keeps its last state.
+void Simulation::retire_departed() {
+  if (model_.terrain.closed) return;
+  const double left = model_.terrain.left_wall ? -1e300 : model_.terrain.bed.front().x;
+  const double right = model_.terrain.right_wall ? 1e300 : model_.terrain.bed.back().x;
+  for (std::size_t i = 0; i < soil_.n_active;) {
+    if (soil_.x[i] >= left && soil_.x[i] <= right) {
+      ++i;
+      continue;
+    }
+    const std::size_t last = --soil_.n_active;
+    for_each_real(soil_, [&](const char*, auto& array) { std::swap(array[i], array[last]); });
+    std::swap(soil_.material[i], soil_.material[last]);
+    std::swap(soil_.id[i], soil_.id[last]);
+  }
+}
+
+void Simulation::step(double until) {
+  const double dt = choose_step(until);
+  const Numerics& numerics = model_.numerics;
+  // Neighbours are sought from where a particle is now to where the others were sorted: half a step apart at most.
+  sort(2.0 * rhs_.constants().h + 0.5 * dt * (max_speed_ + dt * max_acceleration_));
+  if (numerics.density_filter == DensityFilter::shepard && steps_ > 0 && steps_ % numerics.filter_interval == 0)
+    rhs_.filter_density(soil_, walls_, soil_cells_, wall_cells_);
+  const Evaluate evaluate = [&](Soil& soil) {
+    rhs_.evaluate(soil, walls_, soil_cells_, wall_cells_);
+    ++evaluations_;
+  };
+  if (numerics.integrator == Integrator::rk2)
+    step_rk2(soil_, start_, dt, evaluate);
+  else
+    step_leapfrog(soil_, start_, dt, evaluate);
+  ++steps_;
+  time_ = until - time_ <= dt ? until : time_ + dt;
+  check();
+  retire_departed();
+  if (steps_ % penetration_interval == 0) count_penetrations();
+}
+
+/// Finite and plausible? Then the extremes for the next step and the rest rule are brought up to date.
+void Simulation::check() {
+  double v2 = 0.0, a2 = 0.0, m_v2 = 0.0, mass = 0.0;
+  std::int32_t bad = -1;
+  for (std::size_t i = 0; i < soil_.n_active; ++i) {
+    const double v2_i = norm2(soil_.velocity(i)), a2_i = soil_.ax[i] * soil_.ax[i] + soil_.ay[i] * soil_.ay[i];
+    const bool sound = std::isfinite(soil_.x[i] + soil_.y[i] + v2_i + a2_i + soil_.rho[i]) && soil_.rho[i] > 0.0 &&
+                       v2_i < 100.0 * bounds_.c * bounds_.c;
+    if (!sound && (bad < 0 || soil_.id[i] < bad)) bad = soil_.id[i];
+    v2 = std::max(v2, v2_i), a2 = std::max(a2, a2_i);
+    m_v2 += soil_.m[i] * v2_i, mass += soil_.m[i];
+  }
+  if (bad >= 0) {
+    const Vec2 x = origin_[static_cast<std::size_t>(bad)];
+    throw DivergedError("the run diverged at step " + std::to_string(steps_) + ", time " + std::to_string(time_) + " s: particle " +
+                            std::to_string(bad) + ", which started at (" + std::to_string(x.x) + ", " + std::to_string(x.y) +
+                            ") m, is no longer finite or faster than 10 times sound; try a smaller time step",
+                        steps_, time_, bad);
+  }
+  max_speed_ = std::sqrt(v2), max_acceleration_ = std::sqrt(a2);
+  peak_speed_ = std::max(peak_speed_, max_speed_);
+  const bool slow = model_.time.stop_at_rest && m_v2 < mass * model_.time.stop_at_rest->speed * model_.time.stop_at_rest->speed;
+  if (!slow) slow_since_ = -1.0;
+  else if (slow_since_ < 0.0) slow_since_ = time_;
+}
+
+bool Simulation::rests() const { return slow_since_ >= 0.0 && time_ - slow_since_ >= model_.time.stop_at_rest->hold; }
+
+void Simulation::count_penetrations() {
+  for (std::size_t i = 0; i < soil_.n_active; ++i)
+    if (nearest(wall_line_, soil_.position(i)).distance < 0.0) penetrated_[static_cast<std::size_t>(soil_.id[i])] = 1;
+}
+
+RunResult Simulation::result() const {
+  RunResult r;
+  r.measures = measure_fronts(soil_, model_.terrain.left_boundary, model_.dx);
+  r.soil = static_cast<std::int64_t>(soil_.size()), r.wall = static_cast<std::int64_t>(walls_.size());
+  r.steps = steps_, r.time = time_, r.evaluations = evaluations_;
+  r.max_speed = peak_speed_, r.final_max_speed = max_speed_;
+  auto behind = penetrated_;
+  for (std::size_t i = 0; i < soil_.n_active; ++i)
+    if (nearest(wall_line_, soil_.position(i)).distance < 0.0) behind[static_cast<std::size_t>(soil_.id[i])] = 1;
+  r.penetrated = std::accumulate(behind.begin(), behind.end(), std::int64_t{0});
+  r.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
+  r.at_rest = max_speed_ < 0.01 * std::sqrt(norm(model_.g) * height_);
+  r.digest = digest(soil_);
+  r.ending = time_ >= model_.time.end ? Ending::end_time : rests() ? Ending::at_rest : Ending::interrupted;
+  return r;
+}
+
+HistoryRow Simulation::history_row() const {
+  const double left = model_.terrain.left_boundary;
+  return {time_, steps_, farthest(soil_) - left, centre_of_mass(soil_).x - left, kinetic_energy(soil_), max_speed_};
+}
+
+Frame Simulation::frame() const {
+  Frame f;
+  f.time = time_, f.step = steps_, f.n_soil = soil_.size();
+  const std::size_t n = soil_.size() + walls_.size();
+  for (auto* array : {&f.position, &f.displacement, &f.velocity}) array->resize(n);
+  for (auto* array : {&f.density, &f.pressure, &f.phi, &f.shear_rate}) array->resize(n);
+  f.stress.resize(n);
+  for (std::size_t i = 0; i < soil_.size(); ++i) {
+    const auto k = static_cast<std::size_t>(soil_.id[i]);
+    f.position[k] = soil_.position(i), f.displacement[k] = soil_.position(i) - origin_[k], f.velocity[k] = soil_.velocity(i);
+    f.density[k] = soil_.rho[i], f.pressure[k] = soil_.p[i];
+    f.phi[k] = std::atan(soil_.tan_phi[i]), f.shear_rate[k] = soil_.gamma_dot[i];
+    f.stress[k] = {soil_.sxx[i], soil_.syy[i], -3.0 * soil_.p[i] - soil_.sxx[i] - soil_.syy[i], soil_.sxy[i]};  // tr sigma = -3 p
+  }
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    const std::size_t k = soil_.size() + w;
+    f.position[k] = walls_.position(w), f.density[k] = model_.materials.front().rho0 * std::max(1.0, walls_.compression[w]);
+    f.pressure[k] = walls_.p[w];
+    f.stress[k] = {walls_.sxx[w], walls_.syy[w], -3.0 * walls_.p[w] - walls_.sxx[w] - walls_.syy[w], walls_.sxy[w]};
+  }
+  return f;
+}
+
+State Simulation::state() const {
+  State s;
+  for_each_real(soil_, [&](const char* name, const auto& array) { s.reals[name] = array; });
+  for_each_wall_real(walls_, [&](const char* name, const auto& array) { s.reals[name] = array; });
+  s.reals["scalars"] = {time_, peak_speed_, max_speed_, max_acceleration_, slow_since_};
+  s.integers["material"].assign(soil_.material.begin(), soil_.material.end());
+  s.integers["id"].assign(soil_.id.begin(), soil_.id.end());
+  s.integers["penetrated"] = penetrated_;
+  s.integers["counters"] = {static_cast<std::int64_t>(soil_.n_active), steps_, evaluations_};
+  return s;
+}
+
+void Simulation::restore(const State& state) {
+  const auto take = [&](const auto& map, const std::string& name, std::size_t n) -> const auto& {
+    const auto it = map.find(name);
+    if (it == map.end() || it->second.size() != n) throw IoError("the checkpoint does not belong to this case: '" + name + "' differs");
+    return it->second;
+  };
+  for_each_real(soil_, [&](const char* name, auto& array) { array = take(state.reals, name, array.size()); });
+  for_each_wall_real(walls_, [&](const char* name, auto& array) { array = take(state.reals, name, array.size()); });
+  const auto& scalars = take(state.reals, "scalars", 5);
+  time_ = scalars[0], peak_speed_ = scalars[1], max_speed_ = scalars[2], max_acceleration_ = scalars[3], slow_since_ = scalars[4];
+  const auto& material = take(state.integers, "material", soil_.size());
+  const auto& id = take(state.integers, "id", soil_.size());
+  for (std::size_t i = 0; i < soil_.size(); ++i) {
+    if (id[i] < 0 || id[i] >= static_cast<std::int64_t>(soil_.size()) || material[i] < 0 ||
+        material[i] >= static_cast<std::int64_t>(model_.materials.size()))
+      throw IoError("the checkpoint does not belong to this case: identities out of range");
+    soil_.material[i] = static_cast<std::int32_t>(material[i]), soil_.id[i] = static_cast<std::int32_t>(id[i]);
+  }
+  penetrated_ = take(state.integers, "penetrated", penetrated_.size());
+  const auto& counters = take(state.integers, "counters", 3);
+  soil_.n_active = static_cast<std::size_t>(counters[0]), steps_ = counters[1], evaluations_ = counters[2];
+}
+
+}  // namespace talus

@@ -1,0 +1,72 @@
+#pragma once
+// The right-hand side of the landslide: neighbours -> velocity gradient -> stress -> walls -> acceleration.
+
+#include <vector>
+
+#include "material/bingham.hpp"
+#include "material/equation_of_state.hpp"
+#include "material/material.hpp"
+#include "neighbours/cell_list.hpp"
+#include "particles/particles.hpp"
+#include "sph/artificial_viscosity.hpp"
+#include "sph/kernel.hpp"
+#include "sph/numerics.hpp"
+
+namespace talus {
+
+/// What the law of a point needs to know of its material.
+struct PointLaw {
+  EquationOfState eos;
+  double c;         ///< cohesion [Pa]
+  Bingham bingham;
+  double G;         ///< numerical shear modulus of the elastic law [Pa]
+};
+
+/// Constants of a run that every pair sees.
+struct FlowConstants {
+  double h = 0.0;    ///< smoothing length [m]
+  double dx = 0.0;   ///< particle spacing [m]
+  double c_s = 0.0;  ///< speed of sound [m/s]
+  Vec2 g;            ///< gravity [m/s2]
+  Rheology rheology;
+  Numerics numerics;
+  Walls walls;
+  std::vector<PointLaw> laws;  ///< by material
+};
+
+/// Builds the point laws of `materials`; c_s [m/s].
+std::vector<PointLaw> point_laws(const std::vector<Material>& materials, const Rheology& rheology, double c_s);
+
+/// Evaluates rates of change. Gather loops only: every particle sums its own neighbours in the order of the cells, so the
+/// result has the same bits for any number of threads.
+class RightHandSide {
+ public:
+  explicit RightHandSide(FlowConstants constants) : k_(std::move(constants)) {}
+
+  /// Fills ax, ay, drho, dt** and the derived p, s**, gamma_dot of the active soil, and the extrapolated stress of the walls.
+  /// With the elastic law it first returns t** to the yield surface.
+  /// Both cell lists must cover 2h around every particle's present position.
+  void evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+
+  /// One pass of the Shepard filter over the densities of the active soil.
+  void filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+
+  const FlowConstants& constants() const { return k_; }
+
+ private:
+  template <class Kernel>
+  void evaluate_with(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  template <class Kernel>
+  void gradients_and_stress(const Kernel& kernel, Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  template <class Kernel>
+  void wall_stress(const Kernel& kernel, const Soil& soil, WallParticles& walls, const CellList& soil_cells) const;
+  template <class Kernel>
+  void accelerations(const Kernel& kernel, Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  template <class Kernel>
+  void shepard(const Kernel& kernel, Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  void apply_law(Soil& soil, std::size_t i, const Mat2& L, double tan_phi) const;
+
+  FlowConstants k_;
+};
+
+}  // namespace talus
