@@ -1,0 +1,88 @@
+#include "figures/canvas.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "figures/gnuplot.hpp"
+#include "math/error.hpp"
+
+namespace talus::figures {
+namespace {
+
+constexpr double margin = 24;           // px left and right of the stamps
+constexpr double px_per_character = 8;  // of the bold title, on average
+
+std::string font(int points, bool bold) {
+  return std::string("font 'sans-serif") + (bold ? ":Bold," : ",") + std::to_string(points) + "'";
+}
+
+// Screen coordinates run from 0 to 1, upwards.
+double across(const Canvas& canvas, double x) { return x / canvas.width; }
+double up(const Canvas& canvas, double y) { return 1.0 - y / canvas.height; }
+
+std::string terminal(const Canvas& canvas, const std::filesystem::path& path) {
+  const auto size = [&](int scale) {
+    return std::to_string(std::lround(scale * canvas.width)) + "," + std::to_string(std::lround(scale * canvas.height));
+  };
+  if (path.extension() == ".svg")
+    return "set terminal svg size " + size(1) + " dynamic noenhanced font 'sans-serif,10' background '#ffffff'\n";
+  if (path.extension() == ".png") {
+    const std::string scale = std::to_string(png_scale);
+    return "set terminal pngcairo size " + size(png_scale) + " noenhanced font 'sans-serif,10' fontscale " + scale +
+           " linewidth " + scale + " pointscale " + scale + " background '#ffffff'\n";
+  }
+  throw IoError(path.string() + ": a figure ends in .svg or .png");
+}
+
+}  // namespace
+
+Script begin(const Canvas& canvas, const Stamps& stamps, double reserved) {
+  Script script;
+  script("set encoding utf8");
+  script("set border 3 linewidth 0.8 linecolor rgb '", ink, "'");
+  script("set tics nomirror out scale 0.6 textcolor rgb '", ink, "'");
+  script("set grid back linewidth 0.6 linecolor rgb '", grid, "'");
+  script("set key noautotitle");
+  const double room = canvas.width - 2 * margin - reserved;
+  text(script, canvas, margin, 24, shortened(stamps.title, static_cast<std::size_t>(room / px_per_character)),
+       Align::left, 13, true);
+  text(script, canvas, margin, 46, stamps.subtitle, Align::left, 10, false, faint);
+  text(script, canvas, margin, canvas.height - 13, stamps.source, Align::left, 8, false, faint);
+  script("set multiplot");
+  return script;
+}
+
+void place(Script& script, const Canvas& canvas, const Panel& panel) {
+  script("set lmargin at screen ", across(canvas, panel.left));
+  script("set rmargin at screen ", across(canvas, panel.right));
+  script("set tmargin at screen ", up(canvas, panel.top));
+  script("set bmargin at screen ", up(canvas, panel.bottom));
+}
+
+void text(Script& script, const Canvas& canvas, double x, double y, std::string_view words, Align align, int points,
+          bool bold, const char* colour) {
+  if (words.empty()) return;
+  const char* where = align == Align::left ? "left" : align == Align::right ? "right" : "center";
+  script("set label ", literal(words), " at screen ", across(canvas, x), ", screen ", up(canvas, y), " ", where,
+         " front ", font(points, bold), " textcolor rgb '", colour, "'");
+}
+
+void colour_bar(Script& script, const Canvas& canvas, const Panel& bar, std::string_view name) {
+  script("set colorbox horizontal user origin screen ", across(canvas, bar.left), ", screen ", up(canvas, bar.bottom),
+         " size screen ", bar.width() / canvas.width, ", screen ", bar.height() / canvas.height, " noborder front");
+  script("set cbtics nomirror out scale 0.4 offset 0,0.5 ", font(9, false));
+  text(script, canvas, bar.left - 10, 0.5 * (bar.top + bar.bottom), name, Align::right);
+}
+
+double nice_step(double range, int parts) {
+  const double rough = range / parts;
+  const double decade = std::pow(10.0, std::floor(std::log10(rough)));
+  const double share = rough / decade;
+  return decade * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
+}
+
+void save(const Script& script, const Canvas& canvas, const std::filesystem::path& path) {
+  run_gnuplot(terminal(canvas, path) + script.text(), path);
+}
+
+}  // namespace talus::figures

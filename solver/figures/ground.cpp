@@ -1,0 +1,87 @@
+#include "figures/ground.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "figures/palette.hpp"
+
+namespace talus::figures {
+namespace {
+
+Vec2 at_x(Vec2 a, Vec2 b, double x) { return a + ((x - a.x) / (b.x - a.x)) * (b - a); }
+
+}  // namespace
+
+std::vector<Vec2> clipped(const std::vector<Vec2>& line, double lo, double hi) {
+  std::vector<Vec2> out;
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    const Vec2 a = line[i];
+    const Vec2 b = line[i + 1];
+    if (b.x < lo || a.x > hi) continue;
+    if (out.empty()) out.push_back(a.x < lo ? at_x(a, b, lo) : a);
+    out.push_back(b.x > hi ? at_x(a, b, hi) : b);
+  }
+  return out;
+}
+
+std::vector<Vec2> boundary(const Terrain& terrain, double lo, double hi) {
+  if (terrain.bed.empty()) return {};
+  if (terrain.closed) {
+    std::vector<Vec2> ring = terrain.bed;
+    ring.push_back(ring.front());
+    return ring;
+  }
+  std::vector<Vec2> line = clipped(terrain.bed, lo, hi);
+  const Vec2 first = terrain.bed.front();
+  const Vec2 last = terrain.bed.back();
+  if (terrain.left_wall && first.x >= lo) line.insert(line.begin(), {first.x, std::max(first.y, terrain.wall_top)});
+  if (terrain.right_wall && last.x <= hi) line.push_back({last.x, std::max(last.y, terrain.wall_top)});
+  return line;
+}
+
+double bed_height(const Terrain& terrain, double x) {
+  const auto& bed = terrain.bed;
+  if (x <= bed.front().x) return bed.front().y;
+  for (std::size_t i = 0; i + 1 < bed.size(); ++i) {
+    if (x <= bed[i + 1].x) return at_x(bed[i], bed[i + 1], x).y;
+  }
+  return bed.back().y;
+}
+
+std::vector<Stroke> hatching(const std::vector<Vec2>& line, double spacing, double length) {
+  std::vector<Stroke> strokes;
+  double next = spacing;  // distance from the start of the segment to the next stroke
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    const Vec2 step = line[i + 1] - line[i];
+    const double reach = norm(step);
+    if (reach == 0.0) continue;
+    const Vec2 t = (1.0 / reach) * step;
+    const Vec2 right{t.y, -t.x};
+    for (; next <= reach; next += spacing)
+      strokes.push_back({line[i] + next * t, (length / std::sqrt(2.0)) * (right - t)});
+    next -= reach;
+  }
+  return strokes;
+}
+
+GroundElements ground_elements(Script& script, const Terrain& terrain, const Box& view, double metre,
+                               const std::string& tag) {
+  const std::vector<Vec2> line = boundary(terrain, view.lo.x, view.hi.x);
+  if (line.size() < 2) return {};
+  GroundElements elements;
+  if (!terrain.closed) {
+    script.data("fill" + tag, clipped(terrain.bed, view.lo.x, view.hi.x));
+    elements.behind = "$fill" + tag + " using 1:2 with filledcurves y1=" + number(view.lo.y) + " fillcolor rgb '" +
+                      ground + "', \\\n  ";
+  }
+  std::vector<std::array<double, 4>> rows;
+  for (const Stroke& s : hatching(line, 9 / metre, 8 / metre))
+    rows.push_back({s.from.x, s.from.y, s.along.x, s.along.y});
+  script.data("line" + tag, line).data("hatch" + tag, rows);
+  elements.front = "$hatch" + tag + " using 1:2:3:4 with vectors nohead linewidth 0.6 linecolor rgb '" +
+                   std::string(faint) + "', \\\n  $line" + tag + " using 1:2 with lines linewidth 2.2 linecolor rgb '" +
+                   ink + "', \\\n  ";
+  return elements;
+}
+
+}  // namespace talus::figures

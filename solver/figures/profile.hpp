@@ -1,0 +1,66 @@
+#pragma once
+// Pictures of the slide in section, particles in their true size: one, or a sequence of small multiples like [Z20]
+// Figs. 10, 11.
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "figures/canvas.hpp"
+#include "particles/geometry_input.hpp"
+#include "simulation/frame.hpp"
+
+namespace talus::figures {
+
+/// What the particles are coloured by.
+enum class Colour { speed, friction_angle, displacement, pressure };
+
+/// "friction angle (°)" and so on, as it stands beside the colour bar.
+std::string colour_name(Colour colour);
+/// The quantity of one particle in the unit of the picture: m/s, degrees, m, kPa.
+double colour_value(const Frame& frame, std::size_t i, Colour colour);
+
+/// One picture of a sequence.
+struct Snapshot {
+  const Frame* frame;
+  Colour colour;
+  std::string caption;  ///< "t = 2.25 s" if empty
+};
+
+/// Span of the colour bar, in the unit of the picture.
+struct ColourRange {
+  double lo;
+  double hi;
+};
+
+/// Smallest round range that holds the soil of the frames; never empty.
+ColourRange colour_range(std::span<const Frame* const> frames, Colour colour);
+
+struct ProfileOptions {
+  bool mark_front = true;            ///< a dashed line and the distance from the left boundary at the farthest particle
+  std::optional<ColourRange> range;  ///< for all snapshots; unset: from the snapshots of the same colour
+  std::optional<Box> view;           ///< what is shown [m]; unset: the soil of all snapshots and some terrain ahead
+};
+
+/// The soil of all frames and some terrain ahead of it. [m]
+Box view_of(std::span<const Frame* const> frames, const Terrain& terrain, double dx);
+
+/// The snapshots as panels of one figure with one scale and one colour scale a quantity.
+/// @param dx      particle spacing [m]; a particle is a disk of area dx^2
+/// @param raster  draw the soil as an image instead of disks, for an .svg of many particles
+Sheet profile_sheet(std::span<const Snapshot> snapshots, const Terrain& terrain, double dx, const Stamps& stamps,
+                    const ProfileOptions& options = {}, bool raster = false);
+
+/// The same, drawn to .svg or .png; an .svg of more than 3000 particles gets the soil as an embedded image, so that it
+/// stays small.
+/// @throws IoError when gnuplot is missing or fails, or the file cannot be written
+void plot_sequence(std::span<const Snapshot> snapshots, const Terrain& terrain, double dx,
+                   const std::filesystem::path& path, const Stamps& stamps, const ProfileOptions& options = {});
+
+/// One snapshot.
+void plot_profile(const Frame& frame, const Terrain& terrain, double dx, Colour colour,
+                  const std::filesystem::path& path, const Stamps& stamps, const ProfileOptions& options = {});
+
+}  // namespace talus::figures
