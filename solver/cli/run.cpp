@@ -1,7 +1,253 @@
+// talus run: one realization from a case file to result.json, snapshots and history.
+
+#include <omp.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <iostream>
+#include <optional>
+#include <random>
+
+#include "case/load.hpp"
+#include "cli/signals.hpp"
 #include "cli/verbs.hpp"
+#include "cli/version.hpp"
+#include "figures/figures.hpp"
+#include "io/checkpoint.hpp"
+#include "io/files.hpp"
+#include "io/history.hpp"
+#include "io/result_json.hpp"
+#include "io/vtkhdf.hpp"
+#include "monte_carlo/realization.hpp"
+#include "simulation/simulation.hpp"
 
 namespace talus::cli {
+namespace {
 
-void add_run(CLI::App& app, Action&) { app.add_subcommand("run"); }
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr double checkpoint_period = 60.0;  ///< seconds of wall clock that a kill -9 may cost
+constexpr int history_rows = 500;
+
+struct RunOptions {
+  fs::path case_file, out;
+  std::vector<std::string> overrides;
+  std::optional<std::int64_t> realization;
+  std::optional<std::uint64_t> seed;
+  std::optional<double> perturbation;
+  int threads = 0;
+  bool resume = false, figures = false, json = false, study_worker = false;
+};
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+  return text;
+}
+
+/// --seed, else the interrupted run's own, else the case's, else one from the machine's entropy. Never more than 53 bits,
+/// so that every reader of JSON keeps it exact.
+std::uint64_t choose_seed(const RunOptions& options, const LoadedCase& loaded) {
+  if (options.seed) return *options.seed;
+  const fs::path earlier = options.out / "case.resolved.json";
+  if (options.resume && fs::exists(earlier)) {
+    const auto document = nlohmann::json::parse(read_file(earlier, 64u << 20), nullptr, false);
+    const nlohmann::json::json_pointer seed("/study/seed");
+    if (!document.is_discarded() && document.contains(seed) && document[seed].is_number_unsigned()) return document[seed];
+  }
+  if (loaded.value.study.seed) return *loaded.value.study.seed;
+  std::random_device entropy;
+  return ((std::uint64_t{entropy()} << 32) | entropy()) & ((1ull << 53) - 1);
+}
+
+/// The run's files and when each is due.
+class Recorder {
+ public:
+  Recorder(const fs::path& directory, const Simulation& simulation, const Model& model, bool resumed)
+      : history_file_(directory / "history.csv"), snapshots_(open(directory / "snapshots.vtkhdf", simulation, resumed)),
+        due_(model.time.snapshots), history_step_(model.time.end / history_rows) {
+    if (resumed && fs::exists(history_file_))
+      for (const HistoryRow& row : read_history(history_file_))
+        if (row.step <= simulation.steps()) history_.push_back(row);
+    if (history_.empty()) history_.push_back(simulation.history_row());
+    while (!due_.empty() && due_.front() <= simulation.time()) due_.erase(due_.begin());
+  }
+
+  /// To be called after every step. Snapshots are taken at the first step at or after their time: a step is never shortened for them.
+  void record(const Simulation& simulation) {
+    if (simulation.time() >= history_.back().time + history_step_) history_.push_back(simulation.history_row());
+    if (due_.empty() || simulation.time() < due_.front()) return;
+    snapshots_.append(simulation.frame());
+    while (!due_.empty() && due_.front() <= simulation.time()) due_.erase(due_.begin());
+  }
+  void write_history() const { talus::write_history(history_file_, history_); }
+  void finish(const Simulation& simulation) {
+    if (history_.back().step < simulation.steps()) history_.push_back(simulation.history_row());
+    write_history();
+    snapshots_.append(simulation.frame());
+    snapshots_.close();
+  }
+
+ private:
+  static SnapshotWriter open(const fs::path& path, const Simulation& simulation, bool resumed) {
+    return resumed ? SnapshotWriter::resume(path, simulation.time()) : SnapshotWriter(path, simulation.frame());
+  }
+
+  fs::path history_file_;
+  SnapshotWriter snapshots_;
+  std::vector<double> due_;
+  double history_step_;
+  std::vector<HistoryRow> history_;
+};
+
+/// One line that is redrawn, on a terminal only.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool on) : on_(on && isatty(STDERR_FILENO) != 0) {}
+  ~ProgressLine() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+  }
+  void show(const Simulation& simulation, double end, double elapsed) {
+    if (!on_ || elapsed < next_) return;
+    next_ = elapsed + 0.2;
+    const double share = simulation.time() / end;
+    std::fprintf(stderr, "\r\033[K%5.1f %%  t = %.2f of %g s  front %.2f m  %.0f s left at most", 100.0 * share, simulation.time(), end,
+                 simulation.history_row().front, share > 0.0 ? elapsed * (1.0 - share) / share : 0.0);
+    std::fflush(stderr);
+    shown_ = true;
+  }
+
+ private:
+  bool on_, shown_ = false;
+  double next_ = 0.5;
+};
+
+void print_summary(const RunResult& r, const RunIdentity& identity) {
+  std::printf("influence zone        %10.3f m   (farthest particle from the left boundary)\n", r.measures.influence_zone);
+  std::printf("front, connected body %10.3f m\n", r.measures.front_connected);
+  std::printf("front, 99.9 %% of mass %10.3f m\n", r.measures.front_mass_999);
+  std::printf("front, 99 %% of mass   %10.3f m\n", r.measures.front_mass_99);
+  std::printf("centre of mass x      %10.3f m\n", r.measures.centre_of_mass_x);
+  std::printf("time reached          %10.3f s   in %lld steps%s\n", r.time, static_cast<long long>(r.steps), r.at_rest ? ", at rest" : "");
+  std::printf("particles             %10lld soil + %lld wall, %lld penetrated\n", static_cast<long long>(r.soil), static_cast<long long>(r.wall),
+              static_cast<long long>(r.penetrated));
+  if (r.left_domain > 0) std::printf("left the terrain      %10lld particles: fronts end where the bed ends\n", static_cast<long long>(r.left_domain));
+  if (r.field.terms > 0)
+    std::printf("random field          %10lld terms, %.1f %% of the variance, mean friction angle %.2f deg, seed %llu\n",
+                static_cast<long long>(r.field.terms), 100.0 * r.field.captured_variance, r.field.mean_phi * 180.0 / M_PI,
+                static_cast<unsigned long long>(identity.seed));
+  std::printf("wall clock            %10.2f s   on %d thread%s\ndigest                %s\n", r.wall_clock, r.threads, r.threads == 1 ? "" : "s",
+              r.digest.c_str());
+}
+
+Exit run(const RunOptions& options) {
+  if (options.study_worker && !die_with_parent()) return Exit::interrupted;
+  const auto started = Clock::now();
+  LoadedCase loaded = load_case(options.case_file, options.overrides);
+  const Case& problem = loaded.value;
+  const RunIdentity identity{choose_seed(options, loaded), options.realization, options.perturbation.value_or(0.0)};
+  loaded.resolved["study"]["seed"] = identity.seed;
+  if (options.threads > 0) omp_set_num_threads(options.threads);
+
+  const ParticlePlan plan = plan_particles(problem.model);
+  const Strength soil_strength = strength(problem.model, problem.field, problem.study, plan, identity);
+  OutputDirectory out(options.out, OutputKind::run, loaded.hash, options.resume);
+  const Provenance provenance{version(), identity.seed, identity.realization, options.perturbation, loaded.hash, problem.title, TALUS_COMPILER, utc_now()};
+  const fs::path result_file = out.path() / "result.json", checkpoint_file = out.path() / "checkpoint.h5";
+  if (out.finished()) {
+    const auto [result, of] = read_result(result_file);
+    if (of.seed != identity.seed || of.realization != identity.realization || of.perturbation != options.perturbation)
+      throw IoError(out.path().string() + " holds the finished run of another seed or realization; choose another --out");
+    if (options.json) std::cout << read_file(result_file, 1u << 20);
+    else if (!options.study_worker) print_summary(result, identity);
+    return Exit::ok;
+  }
+
+  Simulation simulation(problem.model, plan, soil_strength.tan_phi);
+  const CheckpointHeader header{version(), loaded.hash, identity.seed, identity.realization, options.perturbation};
+  const bool resumed = options.resume && fs::exists(checkpoint_file);
+  double earlier = 0.0;  // wall clock of the run's earlier processes
+  if (resumed) {
+    const State state = read_checkpoint(checkpoint_file, header);
+    simulation.restore(state);
+    if (const auto clock = state.reals.find("wall_clock"); clock != state.reals.end() && clock->second.size() == 1) earlier = clock->second[0];
+  }
+  write_file_atomically(out.path() / "case.resolved.json", loaded.resolved.dump(2) + "\n");
+  Recorder recorder(out.path(), simulation, problem.model, resumed);
+  ProgressLine progress(!options.json && !options.study_worker);
+  const auto checkpoint = [&] {
+    State state = simulation.state();
+    state.reals["wall_clock"] = {earlier + seconds_since(started)};
+    recorder.write_history();
+    write_checkpoint(checkpoint_file, state, header);
+  };
+
+  catch_stop_signals();
+  double next_checkpoint = checkpoint_period;
+  try {
+    while (!simulation.finished()) {
+      if (stop_requested()) {
+        checkpoint();
+        if (!options.study_worker)
+          std::cerr << "stopped at t = " << simulation.time() << " s with a checkpoint; go on with the same command and --resume\n";
+        return Exit::interrupted;
+      }
+      simulation.step(problem.model.time.end);
+      recorder.record(simulation);
+      const double elapsed = seconds_since(started);
+      progress.show(simulation, problem.model.time.end, elapsed);
+      if (elapsed > next_checkpoint) {
+        checkpoint();
+        next_checkpoint = seconds_since(started) + checkpoint_period;
+      }
+    }
+  } catch (const DivergedError&) {
+    recorder.write_history();
+    throw;
+  }
+  recorder.finish(simulation);
+
+  RunResult result = simulation.result();
+  result.wall_clock = earlier + seconds_since(started);
+  result.threads = omp_get_max_threads();
+  result.field = soil_strength.summary;
+  const std::string text = result_json(result, provenance).dump(2) + "\n";
+  write_file_atomically(result_file, text);
+  out.mark_finished();
+  fs::remove(checkpoint_file);
+  if (options.json) std::cout << text;
+  else if (!options.study_worker) print_summary(result, identity);
+  if (result.penetrated > 0 && !options.study_worker)
+    std::cerr << "warning: " << result.penetrated << " particles passed through a wall: do not trust this run; try a smaller time step or more wall layers\n";
+  if (options.figures)
+    for (const fs::path& figure : plot_run(out.path())) std::cerr << "figure " << figure.string() << "\n";
+  return Exit::ok;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* verb = app.add_subcommand("run", "Run one realization: result.json, case.resolved.json, snapshots.vtkhdf, history.csv");
+  verb->add_option("case", options->case_file, "case file (JSON)")->required();
+  verb->add_option("--out", options->out, "directory for the results; created, or empty")->required();
+  verb->add_option("--realization", options->realization, "index of the realization, from 0; without it the median run")->check(CLI::NonNegativeNumber);
+  verb->add_option("--seed", options->seed, "seed of the random field; otherwise the case's, otherwise a new one, which is recorded");
+  verb->add_option("--threads", options->threads, "OpenMP threads; the result does not depend on them")->check(CLI::Range(1, 4096));
+  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")->allow_extra_args(false);
+  verb->add_flag("--resume", options->resume, "go on from the checkpoint in --out");
+  verb->add_flag("--figures", options->figures, "draw profiles at the snapshot times");
+  verb->add_flag("--json", options->json, "print result.json on stdout");
+  verb->add_option("--perturbation", options->perturbation, "relative change of tan(phi), for noise-floor replicates")->group("");
+  verb->add_flag("--study-worker", options->study_worker, "quiet, and dies with its parent")->group("");
+  verb->callback([options, &action] { action = [options] { return run(*options); }; });
+}
 
 }  // namespace talus::cli

@@ -1,0 +1,52 @@
+#include "monte_carlo/realization.hpp"
+
+#include <cmath>
+
+#include "math/error.hpp"
+#include "random_field/random_field.hpp"
+
+namespace talus {
+namespace {
+
+std::vector<double> draw(const RandomField& field, const FieldSpec& spec, const StudySpec& study, const RunIdentity& identity) {
+  if (!identity.realization) return spec.xi.empty() ? std::vector<double>(field.terms(), 0.0) : spec.xi;
+  const auto index = static_cast<std::uint64_t>(*identity.realization);
+  if (study.sampling == Sampling::monte_carlo) return field.draw(identity.seed, index);
+  if (*identity.realization >= study.realizations)
+    throw ConfigError("/study/realizations", "realization " + std::to_string(index) + " lies outside the Latin hypercube of " +
+                                                 std::to_string(study.realizations) + " realizations");
+  return field.draw_stratified(identity.seed, static_cast<std::uint64_t>(study.realizations), index,
+                               static_cast<std::size_t>(study.stratified_modes));
+}
+
+}  // namespace
+
+Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study, const ParticlePlan& plan,
+                  const RunIdentity& identity) {
+  Strength result;
+  std::vector<double> mu;
+  for (const SoilPoint& point : plan.soil)
+    mu.push_back(std::log(std::tan(model.materials[static_cast<std::size_t>(point.material)].phi)));
+  if (field) {
+    std::vector<Vec2> points;
+    for (const SoilPoint& point : plan.soil) points.push_back(point.x);
+    if (field->mu) mu.assign(plan.soil.size(), *field->mu);
+    const RandomField random(*field, bounding_box(model.slide), model.dx);
+    result.xi = draw(random, *field, study, identity);
+    result.tan_phi = lognormal(random.gaussian(points, result.xi), mu, field->sigma);
+    result.summary.captured_variance = random.captured_variance();
+    result.summary.terms = static_cast<std::int64_t>(random.terms());
+  } else {
+    for (const SoilPoint& point : plan.soil)
+      result.tan_phi.push_back(std::tan(model.materials[static_cast<std::size_t>(point.material)].phi));
+  }
+  double sum = 0.0;
+  for (double& value : result.tan_phi) {
+    value *= 1.0 + identity.perturbation;
+    sum += std::atan(value);
+  }
+  result.summary.mean_phi = sum / static_cast<double>(result.tan_phi.size());
+  return result;
+}
+
+}  // namespace talus

@@ -1,0 +1,35 @@
+#pragma once
+// One realization: from its identity to the friction angle of every soil particle.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "monte_carlo/study_spec.hpp"
+#include "random_field/field_spec.hpp"
+#include "simulation/simulation.hpp"
+
+namespace talus {
+
+/// Which run of a case this is. Everything random follows from it.
+struct RunIdentity {
+  std::uint64_t seed = 0;
+  std::optional<std::int64_t> realization;  ///< unset: the median run, every xi zero (or the xi that the case gives)
+  double perturbation = 0.0;                ///< relative change of tan(phi), for replicates of the noise floor [-]
+  bool operator==(const RunIdentity&) const = default;
+};
+
+/// The strength of every soil particle.
+struct Strength {
+  std::vector<double> tan_phi;  ///< by soil particle of the plan [-]
+  std::vector<double> xi;       ///< coefficients used; empty without a random field
+  FieldSummary summary;
+};
+
+/// tan(phi) = exp(mu + sigma Z(x)) (1 + perturbation) where the case has a random field, tan(phi) of the material otherwise.
+/// [Z20] Eq. 12. With Latin hypercube sampling the draws depend on StudySpec::realizations, as they must.
+/// @throws ConfigError when the field cannot be built or the realization lies outside a Latin hypercube study
+Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study, const ParticlePlan& plan,
+                  const RunIdentity& identity);
+
+}  // namespace talus
