@@ -1,0 +1,141 @@
+#include "case/checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "case/outline.hpp"
+#include "case/words.hpp"
+#include "particles/geometry.hpp"
+#include "simulation/simulation.hpp"
+
+namespace talus {
+namespace {
+
+/// Three significant digits, for lengths and areas in messages.
+std::string rounded(double x) {
+  const double digit = std::pow(10.0, std::floor(std::log10(std::max(std::abs(x), 1e-300))) - 2.0);
+  return to_text(static_cast<double>(static_cast<float>(std::round(x / digit) * digit)));
+}
+
+void check_apart(const Model& model, const Origins& origins, Faults& faults) {
+  for (std::size_t a = 0; a < model.slide.size(); ++a)
+    for (std::size_t b = a + 1; b < model.slide.size(); ++b)
+      if (const double shared = shared_area(model.slide[a].outline, model.slide[b].outline);
+          shared > model.dx * model.dx)
+        faults.add(origins.outlines[b].source,
+                   "overlaps " + origins.outlines[a].source + " by " + rounded(shared) + " m2");
+}
+
+/// An open bed: the soil needs ground beneath it from one end to the other.
+bool check_between_ends(const SlidePart& part, const Vertices& origin, const Terrain& terrain, Faults& faults) {
+  const double left = terrain.bed.front().x, right = terrain.bed.back().x;
+  for (std::size_t k = 0; k < part.outline.size(); ++k) {
+    const Vec2 v = part.outline[k];
+    if (v.x >= left && v.x <= right) continue;
+    const bool beyond_left = v.x < left;
+    const bool wall = beyond_left ? terrain.left_wall : terrain.right_wall;
+    faults.add(origin.points.size() == part.outline.size() ? origin.place(k) : origin.source,
+               to_text(v) + " lies beyond the bed's " + (beyond_left ? "left" : "right") +
+                   " end, x = " + to_text(beyond_left ? left : right) +
+                   (wall ? ", where a wall stands" : ": soil there has no ground beneath it"));
+    return false;
+  }
+  return true;
+}
+
+void check_on_ground(const SlidePart& part, const Vertices& origin, const Model& model, Faults& faults) {
+  const Terrain& terrain = model.terrain;
+  if (!terrain.closed && !check_between_ends(part, origin, terrain, faults)) return;
+  const Intrusion in =
+      terrain.closed ? reach_outside_ring(part.outline, terrain.bed) : depth_below_bed(part.outline, terrain.bed);
+  if (in.depth > 0.5 * model.dx)
+    faults.add(origin.source,
+               std::string(terrain.closed ? "reaches out of the closed bed by " : "lies below the bed by ") +
+                   rounded(in.depth) + " m at " + to_text(in.at) + "; half a particle spacing is tolerated");
+}
+
+void check_counts(const Model& model, Faults& faults) {
+  double soil = 0.0;
+  for (const SlidePart& part : model.slide) soil += area(part.outline);
+  const double cells = soil / (model.dx * model.dx);
+  const double line = wall_line(model.terrain, model.dx, model.placement).length();
+  const double estimate = cells + model.walls.layers * line / model.dx;
+  if (cells < 1.0)
+    faults.add("/particle_spacing_m", "leaves no particle: the slide's area, " + rounded(soil) +
+                                          " m2, is less than one cell of " + rounded(model.dx * model.dx) + " m2");
+  if (estimate <= static_cast<double>(model.max_particles)) return;
+  // N = A/dx^2 + L n/dx, solved for the spacing that just fits.
+  const double n = static_cast<double>(model.max_particles), wall = model.walls.layers * line;
+  faults.add("/particle_spacing_m", "makes about " + rounded(estimate) + " particles, more than max_particles, " +
+                                        std::to_string(model.max_particles) + "; a spacing from " +
+                                        rounded((wall + std::sqrt(wall * wall + 4.0 * n * soil)) / (2.0 * n)) +
+                                        " m on fits");
+}
+
+/// The energy line that falls from the slide's points at the smallest friction angle: how high it passes over `end`.
+double energy_line_over(const Model& model, Vec2 end) {
+  double phi = 1.5707;
+  for (const Material& m : model.materials) phi = std::min(phi, m.phi);
+  double height = -1e6;
+  for (const SlidePart& part : model.slide)
+    for (const Vec2& v : part.outline) height = std::max(height, v.y - std::tan(phi) * std::abs(end.x - v.x));
+  return height - end.y;
+}
+
+void doubt_open_ends(const Model& model, std::vector<Fault>& doubts) {
+  const Terrain& t = model.terrain;
+  const auto look = [&](bool wall, Vec2 end, const char* pointer) {
+    const double over = energy_line_over(model, end);
+    if (!wall && over > 0.0)
+      doubts.push_back({pointer, "may leak: the energy line at the friction angle passes " + rounded(over) +
+                                     " m above the bed's end " + to_text(end) +
+                                     "; soil that leaves is lost, so extend the bed or set a wall"});
+  };
+  look(t.left_wall, t.bed.front(), "/terrain/left_end");
+  look(t.right_wall, t.bed.back(), "/terrain/right_end");
+  if ((t.left_wall || t.right_wall) && bounding_box(model.slide).hi.y > t.wall_top)
+    doubts.push_back(
+        {"/terrain/wall_top_m", "is lower than the slide's highest point; soil may spill over the wall and is lost"});
+}
+
+}  // namespace
+
+void check_geometry(const Model& model, const Origins& origins, Faults& faults) {
+  check_apart(model, origins, faults);
+  for (std::size_t k = 0; k < model.slide.size(); ++k)
+    check_on_ground(model.slide[k], origins.outlines[k], model, faults);
+  check_counts(model, faults);
+}
+
+void check_choices(const Case& c, Faults& faults) {
+  const double reach = 2.0 * c.model.numerics.h_over_dx - 0.5;  // of the support, from half a spacing above the wall
+  if (c.model.walls.layers < reach)
+    faults.add("/walls/layers", std::to_string(c.model.walls.layers) +
+                                    " layers do not fill the kernel's support; smoothing_ratio " +
+                                    to_text(c.model.numerics.h_over_dx) + " needs " + to_text(std::ceil(reach)));
+  if (!c.field) return;
+  if (!c.field->mu)
+    for (const Material& m : c.model.materials)
+      if (m.phi <= 0.0)
+        faults.add("/random_field",
+                   "needs log_mean or mean_tan_phi: material " + quoted(m.name) + " has no friction angle to vary");
+  const bool counted =
+      c.field->sampler == FieldSampler::karhunen_loeve && c.field->truncation != Truncation::variance_share;
+  if (counted && !c.field->xi.empty() && c.field->xi.size() != static_cast<std::size_t>(c.field->terms))
+    faults.add("/random_field/xi", "has " + std::to_string(c.field->xi.size()) + " coefficients, terms is " +
+                                       std::to_string(c.field->terms));
+}
+
+std::vector<Fault> find_doubts(const Case& c) {
+  std::vector<Fault> doubts;
+  const Model& model = c.model;
+  if (!model.terrain.closed) doubt_open_ends(model, doubts);
+  const double courant =
+      model.time.fixed_step.value_or(0.0) * sound_speed(model) / (model.numerics.h_over_dx * model.dx);
+  if (courant > 1.0)
+    doubts.push_back({"/time/fixed_step_s", "is large: sound travels " + rounded(courant) +
+                                                " smoothing lengths in it; expect divergence above 1"});
+  return doubts;
+}
+
+}  // namespace talus

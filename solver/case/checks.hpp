@@ -1,0 +1,25 @@
+#pragma once
+// What no single key can show: whether slide, bed, walls and field fit one another.
+
+#include <vector>
+
+#include "case/case.hpp"
+#include "case/faults.hpp"
+#include "case/vertices.hpp"
+
+namespace talus {
+
+/// Where the vertices of bed and outlines are written.
+struct Origins {
+  Vertices bed;
+  std::vector<Vertices> outlines;  ///< of each slide part
+};
+
+/// Slide parts apart from one another, above the bed, between its ends; as many particles as allowed.
+void check_geometry(const Model& model, const Origins& origins, Faults& faults);
+/// Enough wall layers, friction where a field needs it, given coefficients as many as the field takes.
+void check_choices(const Case& c, Faults& faults);
+/// What may be meant, but often is not: an open end within reach, a wall lower than the slide, a coarse time step.
+std::vector<Fault> find_doubts(const Case& c);
+
+}  // namespace talus

@@ -1,0 +1,43 @@
+#pragma once
+// Plane geometry of polylines and outlines, as far as a case must be checked.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "math/vec2.hpp"
+
+namespace talus {
+
+/// Two edges of a polyline (edge k runs from vertex k to the next) that meet where they should not.
+struct Meeting {
+  std::size_t first = 0;
+  std::size_t second = 0;
+};
+
+/// The first pair of edges that cross, touch or fold back on one another; neighbours may share their vertex.
+std::optional<Meeting> self_meeting(std::span<const Vec2> vertices, bool closed);
+
+/// The area of an outline, positive when walked counter-clockwise. [m2]
+double signed_area(std::span<const Vec2> outline);
+
+/// Area that two outlines share. [m2]
+double shared_area(std::span<const Vec2> a, std::span<const Vec2> b);
+
+/// The soil between a ground surface and a slip surface below it: one outline for each connected piece of
+/// { slip < y < ground }, counter-clockwise from its leftmost vertex. Both surfaces run left to right.
+std::vector<std::vector<Vec2>> between_surfaces(std::span<const Vec2> ground, std::span<const Vec2> slip);
+
+/// A point of the outline's edge that lies deepest on the wrong side of the ground, and how deep. [m]
+struct Intrusion {
+  Vec2 at;
+  double depth = 0.0;
+};
+
+/// How deep an outline reaches below an open bed, within the bed's extent; depth 0 when nowhere.
+Intrusion depth_below_bed(std::span<const Vec2> outline, std::span<const Vec2> bed);
+
+/// How far an outline reaches out of a closed bed, or how thick the rock is that it covers; depth 0 when nowhere.
+Intrusion reach_outside_ring(std::span<const Vec2> outline, std::span<const Vec2> ring);
+
+}  // namespace talus

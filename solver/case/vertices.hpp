@@ -1,0 +1,40 @@
+#pragma once
+// Polylines of a case: inline in the JSON or in a two-column CSV file beside it.
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "case/reader.hpp"
+#include "math/vec2.hpp"
+
+namespace talus {
+
+/// Most vertices of one polyline.
+constexpr std::size_t most_vertices = 20'000;
+
+/// A polyline and where each of its vertices is written.
+struct Vertices {
+  std::vector<Vec2> points;     ///< [m]
+  std::string source;           ///< JSON pointer of the list, or name of the CSV file
+  std::vector<int> lines = {};  ///< CSV only: line of each vertex, counted from 1
+
+  bool empty() const { return points.empty(); }
+  /// "/terrain/bed_m/3", or "bed.csv:5"
+  std::string place(std::size_t k) const;
+};
+
+/// Reads `KEY_m` or `KEY_csv`, whichever is there, with at least `least` vertices.
+/// @param directory  where CSV files lie
+/// @return no vertices when there was a fault or, unless `required`, neither key
+Vertices read_vertices(ObjectReader& in, std::string_view key, std::size_t least,
+                       const std::filesystem::path& directory, bool required = true);
+
+/// Two columns x, y [m]; separator comma, semicolon or tab; one header line, blank lines and # comments are skipped.
+Vertices read_csv(std::string_view text, const std::string& name, Faults& faults);
+
+/// [[x, y], ...] as JSON
+Json to_json(const std::vector<Vec2>& points);
+
+}  // namespace talus
