@@ -118,7 +118,7 @@ void check_choices(const Case& c, Faults& faults) {
     for (const Material& m : c.model.materials)
       if (m.phi <= 0.0)
         faults.add("/random_field",
-                   "needs log_mean or mean_tan_phi: material " + quoted(m.name) + " has no friction angle to vary");
+                   "needs log_mean or mean_tan_phi: material " + in_quotes(m.name) + " has no friction angle to vary");
   const bool counted =
       c.field->sampler == FieldSampler::karhunen_loeve && c.field->truncation != Truncation::variance_share;
   if (counted && !c.field->xi.empty() && c.field->xi.size() != static_cast<std::size_t>(c.field->terms))

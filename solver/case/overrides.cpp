@@ -27,14 +27,14 @@ Json parse_value(std::string_view text, const std::string& source) {
 Json* enter(Json& node, const std::string& part, const std::string& pointer, Faults& faults) {
   if (node.is_object()) return &node[part];
   if (!node.is_array()) {
-    faults.add(pointer, "is neither object nor array, it holds nothing called " + quoted(part));
+    faults.add(pointer, "is neither object nor array, it holds nothing called " + in_quotes(part));
     return nullptr;
   }
   std::size_t index = node.size();
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
   if (error == std::errc{} && end == part.data() + part.size() && index < node.size()) return &node[index];
   faults.add(pointer,
-             "has no element " + quoted(part) + ", it has " + std::to_string(node.size()) + " (counted from 0)");
+             "has no element " + in_quotes(part) + ", it has " + std::to_string(node.size()) + " (counted from 0)");
   return nullptr;
 }
 

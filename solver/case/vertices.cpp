@@ -48,7 +48,7 @@ std::optional<Vec2> read_line(const std::vector<std::string_view>& fields, const
     xy[k] = to_number(field);
     const bool decimal_comma = field.find(',') != std::string_view::npos;
     if (!xy[k])
-      faults.add(place, quoted(field) + " is not a number" + (decimal_comma ? "; write a decimal point" : ""));
+      faults.add(place, in_quotes(field) + " is not a number" + (decimal_comma ? "; write a decimal point" : ""));
     else if (!std::isfinite(*xy[k]) || !coordinate.allows(*xy[k]))
       faults.add(place, shorten(field) + " is out of range; " + coordinate.describe());
     else

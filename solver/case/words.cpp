@@ -60,6 +60,6 @@ std::string to_text(double x) {
 
 std::string to_text(Vec2 p) { return std::string("(") + to_text(p.x) + ", " + to_text(p.y) + ")"; }
 
-std::string quoted(std::string_view word) { return std::string("\"") + shorten(word) + "\""; }
+std::string in_quotes(std::string_view word) { return std::string("\"") + shorten(word) + "\""; }
 
 }  // namespace talus

@@ -27,6 +27,6 @@ std::string to_text(double x);
 /// "(3, 4.5)"
 std::string to_text(Vec2 p);
 /// The word shortened, between quotation marks.
-std::string quoted(std::string_view word);
+std::string in_quotes(std::string_view word);
 
 }  // namespace talus
