@@ -1,0 +1,125 @@
+#include "io/files.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+#include <atomic>
+#include <cerrno>
+#include <system_error>
+
+#include "math/error.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a person can do about an error of the system; empty where its text says it all.
+std::string advice(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space or choose another disk";
+    case EFBIG:
+      return "raise the limit of file size (ulimit -f)";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "choose a place that you may read and write";
+    case ENOENT:
+      return "check the path";
+    case ENOTDIR:
+      return "a part of the path is a file, not a directory";
+    case EMFILE:
+    case ENFILE:
+      return "raise the limit of open files (ulimit -n)";
+    default:
+      return "";
+  }
+}
+
+fs::path directory_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+
+/// A new file beside the one that is wanted; gone again unless it has taken that one's name.
+class Temporary {
+ public:
+  explicit Temporary(const fs::path& target) : target_(target) {
+    static std::atomic<unsigned> counter{0};
+    do {
+      path_ = directory_of(target) / ("." + target.filename().string() + ".tmp-" + std::to_string(::getpid()) + "-" +
+                                      std::to_string(counter++));
+      file_ = FileDescriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    } while (!file_ && errno == EEXIST);
+    if (!file_) throw_io_error("write", target_, errno);
+  }
+  ~Temporary() {
+    if (!renamed_) ::unlink(path_.c_str());
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+
+  void write(std::string_view content) {
+    while (!content.empty()) {
+      const ssize_t written = ::write(file_.get(), content.data(), content.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) throw_io_error("write", target_, errno);
+      content.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+
+  void rename() {
+    while (::fsync(file_.get()) != 0)
+      if (errno != EINTR) throw_io_error("write", target_, errno);
+    if (file_.close() != 0) throw_io_error("write", target_, errno);
+    if (::rename(path_.c_str(), target_.c_str()) != 0) throw_io_error("write", target_, errno);
+    renamed_ = true;
+  }
+
+ private:
+  fs::path target_;
+  fs::path path_;
+  FileDescriptor file_;
+  bool renamed_ = false;
+};
+
+void sync_directory(const fs::path& directory) {
+  const FileDescriptor fd(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd) ::fsync(fd.get());  // the file itself is safe; some file systems cannot sync a directory
+}
+
+}  // namespace
+
+void throw_io_error(std::string_view doing, const fs::path& path, int error) {
+  const std::string todo = advice(error);
+  throw IoError("cannot " + std::string(doing) + " " + path.string() + ": " + std::generic_category().message(error) +
+                (todo.empty() ? "" : "; " + todo));
+}
+
+void write_file_atomically(const fs::path& path, std::string_view content) {
+  // A rename would put a file in the place of /dev/null just as well.
+  struct stat old {};
+  if (::stat(path.c_str(), &old) == 0 && !S_ISREG(old.st_mode))
+    throw IoError("cannot write " + path.string() + ": it exists and is not a regular file; choose another name");
+  Temporary file(path);
+  file.write(content);
+  file.rename();
+  sync_directory(directory_of(path));
+}
+
+std::string read_file(const fs::path& path, std::size_t max_bytes) {
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file) throw_io_error("read", path, errno);
+  std::string content;
+  char block[1 << 16];
+  for (;;) {
+    const ssize_t got = ::read(file.get(), block, sizeof block);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw_io_error("read", path, errno);
+    if (got == 0) return content;
+    content.append(block, static_cast<std::size_t>(got));
+    if (content.size() > max_bytes)
+      throw IoError("cannot read " + path.string() + ": it is larger than " + std::to_string(max_bytes) + " bytes");
+  }
+}
+
+}  // namespace talus

@@ -1,0 +1,78 @@
+#pragma once
+// Snapshots for VTK >= 9.3 (ParaView >= 5.12): temporal VTKHDF, an unstructured grid of vertex cells whose topology is
+// stored once; https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html#vtkhdf-file-format. Beside it an
+// XDMF file for ParaView 5.11 that points into the same arrays.
+//
+// Arrays at every step (float32): Points, velocity, displacement [m/s, m; 3 components], density [kg/m3], pressure
+// [Pa], friction_angle_deg, shear_rate [1/s], stress [Pa; XX YY ZZ XY YZ XZ, positive in tension]. Stored once (int32):
+// is_wall, id.
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "io/hdf5.hpp"
+#include "math/vec2.hpp"
+#include "simulation/frame.hpp"
+
+namespace talus {
+
+/// Writes the snapshots of one run, one after the other. A step counts once its number stands in NSteps, which is
+/// written last: whoever reads the file while it grows, or after the process was killed, sees whole steps. Disk space
+/// for a step is reserved before it is written, so that a full disk leaves the earlier steps readable.
+class SnapshotWriter {
+ public:
+  /// Creates the file (by rename, over an older one) and its sidecar with the first step.
+  /// @throws IoError naming the path; std::invalid_argument when the frame's arrays differ in length or are empty
+  SnapshotWriter(std::filesystem::path path, const Frame& first);
+
+  /// Goes on with a file that an earlier process left: steps later than `time` [s] are dropped, so that the file ends
+  /// as that of a run that was never interrupted.
+  /// @throws IoError naming the path: missing, damaged, or not such a file
+  static SnapshotWriter resume(std::filesystem::path path, double time);
+
+  /// Appends a step and hands it to the disk. A frame of the same time as the last one is already there and is left
+  /// out.
+  /// @throws IoError naming the path; std::invalid_argument when the frame is earlier than the last one or has other
+  /// particles
+  void append(const Frame& frame);
+
+  /// Closes the file. @throws IoError
+  void close();
+
+ private:
+  SnapshotWriter(std::filesystem::path path, hdf5::Id file);
+  void write_sidecar() const;
+
+  std::filesystem::path path_;
+  hdf5::Id file_;
+  std::vector<double> times_;  ///< of the steps in the file [s]
+  std::size_t particles_ = 0;
+};
+
+/// Times of the steps of a file [s]. @throws IoError naming the path
+std::vector<double> snapshot_times(const std::filesystem::path& path);
+
+/// A step of a file, with float32 precision; the friction angle is converted back to radians.
+/// @throws IoError naming the path, also when it has no step `index`
+Frame read_frame(const std::filesystem::path& path, std::size_t index);
+
+/// Numbers with a name, one for each point.
+struct NamedArray {
+  std::string name;  ///< with its unit: "friction_angle_deg"
+  std::span<const double> values;
+};
+
+/// Writes points with arrays as a VTKHDF file of a single time (float64), by rename.
+/// @throws IoError naming the path; std::invalid_argument when an array's length is not that of `positions`
+void write_points(const std::filesystem::path& path, std::span<const Vec2> positions,
+                  std::span<const NamedArray> arrays);
+
+/// Writes the same as CSV: columns x_m, y_m and the arrays' names; numbers read back bit for bit.
+/// @throws as write_points
+void write_field_csv(const std::filesystem::path& path, std::span<const Vec2> positions,
+                     std::span<const NamedArray> arrays);
+
+}  // namespace talus
