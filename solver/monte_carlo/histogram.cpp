@@ -58,7 +58,7 @@ std::vector<double> round_grid(double lo, double hi, double width) {
 }
 
 std::vector<double> round_edges(std::span<const double> sample) {
-  const Moments m = moments(sample);
+  const SampleMoments m = moments(sample);
   if (m.n == 0) return {};
   const double scott = m.stdev.value_or(0.0) * 3.49 / std::cbrt(static_cast<double>(m.n));
   // Below a billionth of the values themselves, what varies is rounding.

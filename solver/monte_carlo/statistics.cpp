@@ -35,8 +35,8 @@ std::optional<double> finite(double x) { return std::isfinite(x) ? std::optional
 
 }  // namespace
 
-Moments moments(std::span<const double> sample) {
-  Moments m;
+SampleMoments moments(std::span<const double> sample) {
+  SampleMoments m;
   m.n = static_cast<std::int64_t>(sample.size());
   if (m.n < 1) return m;
   const auto n = static_cast<double>(m.n);
@@ -66,7 +66,7 @@ Moments moments(std::span<const double> sample) {
   return m;
 }
 
-std::optional<double> mean_half_width(const Moments& m) {
+std::optional<double> mean_half_width(const SampleMoments& m) {
   if (!m.mean_ci95) return std::nullopt;
   return 0.5 * (*m.mean_ci95->hi - *m.mean_ci95->lo);
 }
@@ -106,7 +106,7 @@ Quantile quantile(std::span<const double> sorted, double p, std::int64_t failed)
           .if_failed_above = finite(type7(n + failed, p, at))};
 }
 
-std::optional<Ratio> stdev_ratio(const Moments& numerator, const Moments& denominator) {
+std::optional<Ratio> stdev_ratio(const SampleMoments& numerator, const SampleMoments& denominator) {
   if (!numerator.stdev || !denominator.stdev || *denominator.stdev == 0.0) return std::nullopt;
   const double ratio = *numerator.stdev / *denominator.stdev;
   const boost::math::fisher_f f(static_cast<double>(numerator.n - 1), static_cast<double>(denominator.n - 1));
@@ -117,8 +117,8 @@ std::optional<Ratio> stdev_ratio(const Moments& numerator, const Moments& denomi
 
 std::optional<double> correlation(std::span<const double> a, std::span<const double> b) {
   assert(a.size() == b.size());
-  const Moments ma = moments(a);
-  const Moments mb = moments(b);
+  const SampleMoments ma = moments(a);
+  const SampleMoments mb = moments(b);
   if (!ma.stdev || *ma.stdev == 0.0 || *mb.stdev == 0.0) return std::nullopt;
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - *ma.mean) * (b[i] - *mb.mean);

@@ -19,7 +19,7 @@ struct Interval {
 };
 
 /// Moments of a sample with the intervals that hold for independent draws of a normal variable.
-struct Moments {
+struct SampleMoments {
   std::int64_t n = 0;
   std::optional<double> mean;          ///< unset for n < 1
   std::optional<Interval> mean_ci95;   ///< Student: mean +/- t_{0.975, n-1} s / sqrt(n); unset for n < 2
@@ -32,10 +32,10 @@ struct Moments {
 };
 
 /// Moments of `sample`, in any order; sums are taken in the order given.
-Moments moments(std::span<const double> sample);
+SampleMoments moments(std::span<const double> sample);
 
 /// Half the width of `mean_ci95`; unset for n < 2.
-std::optional<double> mean_half_width(const Moments& m);
+std::optional<double> mean_half_width(const SampleMoments& m);
 
 /// A quantile of a sample, its interval, and what failed realizations could make of it.
 struct Quantile {
@@ -64,7 +64,7 @@ struct Ratio {
   double value = 0.0;
   Interval ci95;
 };
-std::optional<Ratio> stdev_ratio(const Moments& numerator, const Moments& denominator);
+std::optional<Ratio> stdev_ratio(const SampleMoments& numerator, const SampleMoments& denominator);
 
 /// Pearson's correlation of two samples of equal size; unset for n < 2 or where one of them is constant.
 std::optional<double> correlation(std::span<const double> a, std::span<const double> b);

@@ -25,7 +25,7 @@ std::vector<double> sorted(std::vector<double> v) {
 }  // namespace
 
 TEST(Moments, MeanAndStudentInterval) {  // x.mean(), stats.t.interval(.95, 11, x.mean(), x.std(ddof=1)/sqrt(12))
-  const Moments m = moments(x);
+  const SampleMoments m = moments(x);
   EXPECT_EQ(m.n, 12);
   EXPECT_NEAR(*m.mean, 34.920833333333334, 1e-13);
   EXPECT_NEAR(*m.mean_ci95->lo, 34.000348486377824, 1e-12);
@@ -36,21 +36,21 @@ TEST(Moments, MeanAndStudentInterval) {  // x.mean(), stats.t.interval(.95, 11, 
 }
 
 TEST(Moments, StdevAndChiSquareInterval) {  // x.std(ddof=1), s*sqrt(11/stats.chi2.ppf([.975, .025], 11))
-  const Moments m = moments(x);
+  const SampleMoments m = moments(x);
   EXPECT_NEAR(*m.stdev, 1.4487390023636746, 1e-13);
   EXPECT_NEAR(*m.stdev_ci95->lo, 1.026279684139464, 1e-12);
   EXPECT_NEAR(*m.stdev_ci95->hi, 2.45978210553269, 1e-12);
 }
 
 TEST(Moments, SkewnessAndExcessKurtosis) {  // stats.skew(x), stats.kurtosis(x)
-  const Moments m = moments(x);
+  const SampleMoments m = moments(x);
   EXPECT_NEAR(*m.skewness, 1.182812781166423, 1e-12);
   EXPECT_NEAR(*m.excess_kurtosis, 0.5717727544006159, 1e-12);
 }
 
 TEST(Moments, WhatCannotBeSaidIsUnset) {
   EXPECT_FALSE(moments({}).mean);
-  const Moments one = moments(std::vector{3.5});
+  const SampleMoments one = moments(std::vector{3.5});
   EXPECT_EQ(*one.mean, 3.5);
   EXPECT_FALSE(one.mean_ci95 || one.stdev || one.stdev_ci95 || one.skewness);
   EXPECT_FALSE(mean_half_width(one));
@@ -58,7 +58,7 @@ TEST(Moments, WhatCannotBeSaidIsUnset) {
 }
 
 TEST(Moments, AConstantSampleDoesNotVary) {
-  const Moments m = moments(std::vector<double>(7, 0.1));  // 0.1 + ... seven times is not 0.7
+  const SampleMoments m = moments(std::vector<double>(7, 0.1));  // 0.1 + ... seven times is not 0.7
   EXPECT_EQ(*m.mean, 0.1);
   EXPECT_EQ(*m.stdev, 0.0);
   EXPECT_EQ(m.mean_ci95, (Interval{0.1, 0.1}));
@@ -127,7 +127,7 @@ TEST(Intervals, CoverAsOftenAsTheySay) {
   for (int round = 0; round < 4000; ++round) {
     std::vector<double> sample(20);
     for (double& v : sample) v = normal(random);
-    const Moments m = moments(sample);
+    const SampleMoments m = moments(sample);
     mean_missed += *m.mean_ci95->lo > 10.0 || *m.mean_ci95->hi < 10.0;
     stdev_missed += *m.stdev_ci95->lo > 2.0 || *m.stdev_ci95->hi < 2.0;
     const Interval median = quantile(sorted(sample), 0.5).ci95;

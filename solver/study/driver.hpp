@@ -1,0 +1,48 @@
+#pragma once
+// Runs a study: a process for each realization, the books kept so that it can be killed at any time and goes on by the
+// same command.
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/plan.hpp"
+#include "study/progress.hpp"
+
+namespace talus {
+
+/// How to run a study; none of it changes a result.
+struct DriverOptions {
+  std::vector<std::string> program;  ///< called as `program... CASE --realization I ...`: the arguments of `talus run`
+  int workers = 1;                   ///< processes at a time, >= 1
+  int threads = 1;                   ///< of each, >= 1
+  std::int64_t first = 0;            ///< realizations first <= i < last are run here, the others elsewhere
+  std::optional<std::int64_t> last;  ///< unset: the planned number
+  bool retry_failed = false;         ///< run again what has failed before
+  std::function<int()>
+      interrupts;  ///< how often a person has asked to stop: once, workers checkpoint; twice, they are killed
+  std::function<void(const Progress&)> report;   ///< called often
+  std::function<void(const std::string&)> note;  ///< called when something happens that a person should know
+  std::chrono::milliseconds poll{25};
+  std::chrono::milliseconds publish_every{5000};  ///< between two rewrites of the tables while running
+  std::chrono::seconds grace{60};                 ///< for workers to checkpoint, or for those of a killed study to end
+};
+
+enum class Outcome { finished, stopped_early, interrupted, too_many_failed };
+
+/// Runs what `plan` asks for and `directory` does not hold yet.
+///
+/// A worker that reports a divergence or an internal error, or that is killed twice, is a failed realization: recorded,
+/// kept in the denominator, not drawn again. A worker that finds the case bad or the disk full ends the study instead:
+/// nothing is recorded, and the same command goes on.
+/// @param resolved  LoadedCase::resolved of `plan`; what the workers read
+/// @throws ConfigError when the directory holds another study, or a worker refuses the case
+/// @throws IoError when the directory cannot be claimed or written, or a worker cannot write
+Outcome run_study(const Plan& plan, const nlohmann::ordered_json& resolved, const std::filesystem::path& directory,
+                  const DriverOptions& options);
+
+}  // namespace talus

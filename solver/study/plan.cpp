@@ -1,0 +1,113 @@
+#include "study/plan.hpp"
+
+#include <chrono>
+
+#include "io/files.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr const char* plan_name = "plan.json";
+constexpr const char* sampling_names[] = {"monte_carlo", "latin_hypercube"};
+
+ordered_json to_json(const Plan& plan) {
+  return {{"program", "talus"},
+          {"version", plan.version},
+          {"title", plan.title},
+          {"case_hash", plan.case_hash},
+          {"seed", plan.seed},
+          {"realizations", plan.study.realizations},
+          {"sampling", sampling_names[static_cast<int>(plan.study.sampling)]},
+          {"stratified_modes", plan.study.stratified_modes},
+          {"noise_floor_replicates", plan.study.noise_floor_replicates},
+          {"stop_when_ci_half_width_below_m",
+           plan.study.stop_half_width ? ordered_json(*plan.study.stop_half_width) : ordered_json()},
+          {"max_failed_share", plan.study.max_failed_share},
+          {"histogram_edges_m", plan.study.histogram_edges}};
+}
+
+Plan from_json(const ordered_json& json) {
+  Plan plan{.title = json.at("title"),
+            .case_hash = json.at("case_hash"),
+            .version = json.at("version"),
+            .seed = json.at("seed"),
+            .study = {}};
+  StudySpec& study = plan.study;
+  study.realizations = json.at("realizations");
+  study.sampling = json.at("sampling") == sampling_names[1] ? Sampling::latin_hypercube : Sampling::monte_carlo;
+  study.stratified_modes = json.at("stratified_modes");
+  study.noise_floor_replicates = json.at("noise_floor_replicates");
+  if (!json.at("stop_when_ci_half_width_below_m").is_null())
+    study.stop_half_width = json.at("stop_when_ci_half_width_below_m").get<double>();
+  study.max_failed_share = json.at("max_failed_share");
+  study.histogram_edges = json.at("histogram_edges_m").get<std::vector<double>>();
+  return plan;
+}
+
+}  // namespace
+
+Plan make_plan(const LoadedCase& loaded, std::uint64_t seed, const std::string& version) {
+  const Case& c = loaded.value;
+  if (c.study.realizations > 1) {
+    const char* same = "every realization would be the same: ";
+    if (!c.field) throw ConfigError("/random_field", std::string(same) + "a study needs a random field");
+    if (c.field->sigma == 0.0)
+      throw ConfigError("/random_field", std::string(same) + "the standard deviation of the field is 0");
+    if (!c.field->xi.empty())
+      throw ConfigError("/random_field/xi", std::string(same) + "the coefficients are given; remove them to draw");
+  }
+  if (c.study.sampling == Sampling::latin_hypercube && c.study.stop_half_width)
+    throw ConfigError(
+        "/study/stop_when_ci_half_width_below_m",
+        "a Latin hypercube is one sample of a fixed size and cannot stop early; use monte_carlo or remove this");
+  return {.title = c.title, .case_hash = loaded.hash, .version = version, .seed = seed, .study = c.study};
+}
+
+std::uint64_t seed_from_clock() {
+  const auto ticks = std::chrono::system_clock::now().time_since_epoch().count();
+  return static_cast<std::uint64_t>(ticks) & ((std::uint64_t{1} << 53) - 1);
+}
+
+std::optional<Plan> find_plan(const fs::path& directory) {
+  const fs::path path = directory / plan_name;
+  std::error_code error;
+  if (!fs::exists(path, error)) return std::nullopt;
+  try {
+    return from_json(ordered_json::parse(read_file(path, std::size_t{1} << 24)));
+  } catch (const nlohmann::json::exception& e) {
+    throw IoError(path.string() + " is not a plan of Talus (" + e.what() + ")");
+  }
+}
+
+void write_plan(const fs::path& directory, const Plan& plan) {
+  write_file_atomically(directory / plan_name, to_json(plan).dump(2) + "\n");
+}
+
+void check_continues(const Plan& begun, const Plan& asked, const fs::path& directory) {
+  std::vector<Fault> faults;
+  const auto differs = [&](const char* pointer, const std::string& what, const std::string& has,
+                           const std::string& wants) {
+    faults.push_back({pointer, directory.string() + " holds a study with " + what + " " + has + ", not " + wants +
+                                   "; choose another directory"});
+  };
+  const auto name = [](const Plan& plan) { return std::string(sampling_names[static_cast<int>(plan.study.sampling)]); };
+  if (begun.seed != asked.seed)
+    differs("/study/seed", "the seed", std::to_string(begun.seed), std::to_string(asked.seed));
+  if (begun.case_hash != asked.case_hash)
+    differs("", "the case hash", begun.case_hash, asked.case_hash + " (another case, or other settings)");
+  if (begun.version != asked.version) differs("", "results of version", begun.version, asked.version);
+  if (name(begun) != name(asked)) differs("/study/sampling", "the sampling", name(begun), name(asked));
+  const std::int64_t has = begun.study.realizations, wants = asked.study.realizations;
+  if (has != wants && asked.study.sampling == Sampling::latin_hypercube)
+    faults.push_back({"/study/realizations", directory.string() + " holds a Latin hypercube of " + std::to_string(has) +
+                                                 " realizations, which cannot become one of " + std::to_string(wants) +
+                                                 "; choose another directory"});
+  else if (wants < has)
+    differs("/study/realizations", "more planned realizations,", std::to_string(has), std::to_string(wants));
+  if (!faults.empty()) throw ConfigError(std::move(faults));
+}
+
+}  // namespace talus

@@ -1,0 +1,121 @@
+#include "study/progress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace talus {
+namespace {
+
+using nlohmann::ordered_json;
+
+template <class... T>
+std::string format(const char* pattern, T... values) {
+  char text[256];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+/// "45 s", "22 min", "3.5 h", "2.1 days"
+std::string duration(double seconds) {
+  if (seconds < 90.0) return format("%.0f s", seconds);
+  if (seconds < 90.0 * 60.0) return format("%.0f min", seconds / 60.0);
+  if (seconds < 48.0 * 3600.0) return format("%.1f h", seconds / 3600.0);
+  return format("%.1f days", seconds / 86400.0);
+}
+
+std::string number(const ordered_json& value, const char* pattern = "%.3f") {
+  return value.is_null() ? "-" : format(pattern, value.get<double>());
+}
+
+std::string interval(const ordered_json& ends) {
+  return ends.is_null() ? "-"
+                        : std::string("[").append(number(ends[0])).append(", ").append(number(ends[1])).append("]");
+}
+
+const ordered_json* quantile(const ordered_json& quantity, double p) {
+  for (const ordered_json& q : quantity.at("quantiles"))
+    if (q.at("p") == p) return &q;
+  return nullptr;
+}
+
+}  // namespace
+
+std::optional<double> time_left(const Progress& p) {
+  if (p.made_now == 0 || p.elapsed <= 0.0) return std::nullopt;
+  const auto remaining = static_cast<double>(p.planned - p.done - p.failed + p.floor_planned - p.floor_made);
+  return remaining * p.elapsed / static_cast<double>(p.made_now);
+}
+
+std::string progress_line(const Progress& p) {
+  std::string text = std::to_string(p.done) + "/" + std::to_string(p.planned) + " done, " + std::to_string(p.failed) +
+                     " failed, " + std::to_string(p.running) + " running";
+  if (p.made_now > 0 && p.elapsed > 0.0)
+    text += format(", %.3g/h", 3600.0 * static_cast<double>(p.made_now) / p.elapsed);
+  if (const auto left = time_left(p)) text += ", " + duration(*left) + " left";
+  if (p.mean) text += format(", mean %.2f", *p.mean);
+  if (p.mean_half_width) text += format(" +/- %.2f", *p.mean_half_width);
+  return text + (p.mean ? " m" : "");
+}
+
+std::string progress_bar(const Progress& p, int width) {
+  const int cells = std::clamp(width / 4, 8, 30);
+  const double share = p.planned > 0 ? static_cast<double>(p.done + p.failed) / static_cast<double>(p.planned) : 1.0;
+  const int full = std::clamp(static_cast<int>(std::floor(share * cells)), 0, cells);
+  std::string text(static_cast<std::size_t>(cells) + 2, '.');
+  std::fill_n(text.begin() + 1, full, '#');
+  text.front() = '[';
+  text.back() = ']';
+  text.append(" ").append(progress_line(p));
+  if (static_cast<int>(text.size()) > width) text.resize(static_cast<std::size_t>(std::max(width, 0)));
+  return text;
+}
+
+std::string summary_table(const ordered_json& study) {
+  const ordered_json& n = study.at("realizations");
+  std::string text = study.at("title").get<std::string>() + "\n";
+  text += format("%lld realizations planned, %lld done, %lld failed", n.at("planned").get<long long>(),
+                 n.at("done").get<long long>(), n.at("failed").get<long long>());
+  if (n.at("stopped_early").get<bool>()) text += "; stopped early, the mean is known well enough";
+  if (!n.at("complete").get<bool>()) text += "; not complete";
+  text += "\nseed " + study.at("provenance").at("seed").dump() + ", captured variance " +
+          number(study.at("captured_variance"));
+  const ordered_json& phi = study.at("mean_friction_angle_deg");
+  text += ", mean friction angle " + number(phi.at("mean"), "%.2f") + " deg, stdev " + number(phi.at("stdev"), "%.2f") +
+          " deg\n\n";
+  text += format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", "", "mean", "95 % interval", "stdev", "95 % interval",
+                 "floor", "median", "95 %");
+  for (const auto& [key, q] : study.at("quantities").items()) {
+    const ordered_json* median = quantile(q, 0.5);
+    const ordered_json* high = quantile(q, 0.95);
+    text += format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", key.c_str(), number(q.at("mean")).c_str(),
+                   interval(q.at("mean_ci95")).c_str(), number(q.at("stdev")).c_str(),
+                   interval(q.at("stdev_ci95")).c_str(), number(q.at("noise_floor_stdev")).c_str(),
+                   median ? number(median->at("value")).c_str() : "-", high ? number(high->at("value")).c_str() : "-");
+  }
+  return text +
+         "floor: standard deviation of runs that differ by rounding-size changes only; a stdev near it is numerics\n";
+}
+
+std::string text_histogram(const ordered_json& quantity, int width) {
+  const ordered_json& h = quantity.at("histogram");
+  const auto counts = h.at("counts").get<std::vector<std::int64_t>>();
+  const auto edges = h.at("edges").get<std::vector<double>>();
+  if (counts.empty()) return {};
+  const std::int64_t most = std::max<std::int64_t>(1, *std::max_element(counts.begin(), counts.end()));
+  const int bar = std::max(10, width - 32);
+  std::string text;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const auto length =
+        static_cast<std::size_t>(std::lround(static_cast<double>(counts[i]) / static_cast<double>(most) * bar));
+    text += format("[%9.6g, %9.6g%c %6lld ", edges[i], edges[i + 1], i + 1 == counts.size() ? ']' : ')',
+                   static_cast<long long>(counts[i]));
+    text += std::string(counts[i] > 0 ? std::max<std::size_t>(length, 1) : 0, '#') + "\n";
+  }
+  const long long below = h.at("underflow").get<long long>(), above = h.at("overflow").get<long long>();
+  if (below > 0) text += format("below the first edge: %lld\n", below);
+  if (above > 0) text += format("above the last edge: %lld\n", above);
+  return text;
+}
+
+}  // namespace talus

@@ -1,0 +1,37 @@
+#pragma once
+// The files of a study that others read, and the way back from its tables.
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "study/paths.hpp"
+#include "study/plan.hpp"
+#include "study/record.hpp"
+
+namespace talus {
+
+/// The records that the study counts: all, or, where it stopped early, those before the stop.
+std::vector<Record> counted(const Plan& plan, const std::vector<Record>& runs);
+
+/// Writes realizations.csv, noise_floor.csv and study.json, each by rename.
+void write_tables(const StudyPaths& paths, const Plan& plan, const std::vector<Record>& runs,
+                  const std::vector<Record>& floor);
+
+/// The tables of a study, or of several that have been merged.
+struct Tables {
+  Plan plan;
+  std::vector<Record> runs;
+  std::vector<Record> floor;
+};
+
+/// Reads the tables of one study.
+/// @throws IoError when the directory is not that of a study, or a table cannot be read
+Tables read_tables(const std::filesystem::path& directory);
+
+/// Joins the tables of studies of the same case and seed. A realization may stand in several of them if its digest is
+/// the same; where it failed in one and is done in another, it is done.
+/// @throws ConfigError naming every difference: case hash, seed, version, sampling, or a realization with two results
+Tables merge(const std::vector<std::filesystem::path>& directories);
+
+}  // namespace talus

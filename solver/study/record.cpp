@@ -1,0 +1,19 @@
+#include "study/record.hpp"
+
+#include <numbers>
+
+namespace talus {
+
+Record done_record(std::int64_t index, const RunResult& result) {
+  return {.index = index,
+          .done = true,
+          .measures = result.measures,
+          .mean_phi_deg = result.field.mean_phi * 180.0 / std::numbers::pi,
+          .captured_variance = result.field.captured_variance,
+          .steps = result.steps,
+          .wall_clock = result.wall_clock,
+          .digest = result.digest,
+          .reason = {}};
+}
+
+}  // namespace talus
