@@ -37,7 +37,7 @@ std::vector<double> every(double interval, double end) {
 std::vector<double> read_snapshots(ObjectReader& in, double end) {
   const auto interval = in.maybe_number("snapshot_interval_s", duration);
   std::vector<double> times = in.numbers("snapshot_times_s", {"s", 0.0, 1e7}, most_snapshots);
-  if (interval && !times.empty())
+  if (interval && in.find("snapshot_times_s") != nullptr)
     in.fault("snapshot_interval_s", "is given beside snapshot_times_s; give one of the two");
   for (std::size_t k = 0; k < times.size(); ++k) {
     if (times[k] > end) in.faults().add(pointer_to(in.pointer("snapshot_times_s"), k), "lies after end_s");

@@ -1,7 +1,122 @@
+// talus validate CASE: all faults of a case, or what running it will take.
+
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "case/load.hpp"
 #include "cli/verbs.hpp"
+#include "particles/geometry.hpp"
+#include "random_field/random_field.hpp"
+#include "simulation/simulation.hpp"
 
 namespace talus::cli {
+namespace {
 
-void add_validate(CLI::App& app, Action&) { app.add_subcommand("validate"); }
+using Json = nlohmann::ordered_json;
+
+struct ValidateOptions {
+  std::string case_file;
+  std::vector<std::string> overrides;
+  bool json = false;
+};
+
+/// What a run of the case takes.
+struct Demand {
+  std::size_t soil = 0, wall = 0;
+  double step = 0.0;  ///< [s]
+  double steps = 0.0;
+  double memory = 0.0;  ///< [bytes]
+  std::optional<double> captured_variance;
+  std::size_t field_terms = 0;
+};
+
+constexpr double bytes_per_soil = 600.0;  ///< arrays, copies of the step, cell lists, frame; measured
+constexpr double bytes_per_wall = 350.0;
+constexpr double bytes_at_least = 20e6;  ///< program and libraries
+
+Demand measure(const Case& c) {
+  Demand d;
+  const ParticlePlan plan = plan_particles(c.model);
+  d.soil = plan.soil.size();
+  d.wall = plan.walls.size();
+  d.step = first_step(c.model);
+  d.steps = std::ceil(c.model.time.end / d.step * (1.0 - 1e-12));
+  d.memory =
+      bytes_at_least + bytes_per_soil * static_cast<double>(d.soil) + bytes_per_wall * static_cast<double>(d.wall);
+  if (c.field) {
+    const RandomField field(*c.field, bounding_box(c.model.slide), c.model.dx);
+    d.captured_variance = field.captured_variance();
+    d.field_terms = field.terms();
+  }
+  return d;
+}
+
+void doubt_variance(const Demand& d, std::vector<Fault>& warnings) {
+  if (!d.captured_variance || *d.captured_variance >= 0.5) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "captures %.2g %% of the variance with %zu terms: most of the stated variability never enters the runs",
+                100.0 * *d.captured_variance, d.field_terms);
+  warnings.push_back({"/random_field", text});
+}
+
+Json to_json(const std::vector<Fault>& faults) {
+  Json list = Json::array();
+  for (const Fault& f : faults) list.push_back({{"pointer", f.pointer}, {"message", f.message}});
+  return list;
+}
+
+void print_json(const Json& value) { std::cout << value.dump(2, ' ', false, Json::error_handler_t::replace) << "\n"; }
+
+Json to_json(const LoadedCase& loaded, const Demand& d) {
+  Json out = {{"valid", true},           {"title", loaded.value.title},
+              {"hash", loaded.hash},     {"particles", {{"soil", d.soil}, {"wall", d.wall}}},
+              {"step_s", d.step},        {"steps", d.steps},
+              {"memory_bytes", d.memory}};
+  if (d.captured_variance) out["field"] = {{"terms", d.field_terms}, {"captured_variance", *d.captured_variance}};
+  out["warnings"] = to_json(loaded.warnings);
+  return out;
+}
+
+void print_text(const LoadedCase& loaded, const Demand& d) {
+  std::printf("%s\n", loaded.value.title.c_str());
+  std::printf("particles          %zu soil + %zu wall\n", d.soil, d.wall);
+  std::printf("time step          %.3g s%s\n", d.step,
+              loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");
+  std::printf("steps              about %.0f to %.4g s\n", d.steps, loaded.value.model.time.end);
+  std::printf("memory             about %.0f MB\n", d.memory / 1e6);
+  if (d.captured_variance)
+    std::printf("captured variance  %.2f %% with %zu terms\n", 100.0 * *d.captured_variance, d.field_terms);
+  std::printf("case hash          %s\n", loaded.hash.c_str());
+  for (const Fault& w : loaded.warnings) std::fprintf(stderr, "warning: %s %s\n", w.pointer.c_str(), w.message.c_str());
+}
+
+Exit validate(const ValidateOptions& options) try {
+  LoadedCase loaded = load_case(options.case_file, options.overrides);
+  const Demand demand = measure(loaded.value);
+  doubt_variance(demand, loaded.warnings);
+  options.json ? print_json(to_json(loaded, demand)) : print_text(loaded, demand);
+  return Exit::ok;
+} catch (const ConfigError& e) {
+  if (!options.json) throw;
+  print_json({{"valid", false}, {"faults", to_json(e.faults)}});
+  return Exit::bad_case;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app, Action& action) {
+  const auto options = std::make_shared<ValidateOptions>();
+  CLI::App* verb = app.add_subcommand("validate", "check a case: every fault at once, or what running it takes");
+  verb->add_option("CASE", options->case_file, "case file")->required();
+  verb->add_option("--set", options->overrides, "override a key: key.path=value (null removes it); repeatable")
+      ->take_all()
+      ->allow_extra_args(false);
+  verb->add_flag("--json", options->json, "print one JSON value");
+  verb->callback([&action, options] { action = [options] { return validate(*options); }; });
+}
 
 }  // namespace talus::cli
