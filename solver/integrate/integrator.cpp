@@ -47,14 +47,14 @@ void step_leapfrog(Soil& soil, StepStart& start, double dt, const Evaluate& eval
     soil.x[i] += 0.5 * dt * soil.vx[i];
     soil.y[i] += 0.5 * dt * soil.vy[i];
     move_from(soil, start, i, 0.5 * dt);
+    start.txx[i] -= soil.txx[i], start.tyy[i] -= soil.tyy[i], start.txy[i] -= soil.txy[i];
   }
   evaluate(soil);
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < n; ++i) {
-    // The stress goes on from the middle, where the evaluation returned it to the yield surface.
-    const Dev t{soil.txx[i] + 0.5 * dt * soil.dtxx[i], soil.tyy[i] + 0.5 * dt * soil.dtyy[i], soil.txy[i] + 0.5 * dt * soil.dtxy[i]};
+    // What the evaluation took off the stress in the middle, to return it to the yield surface, is off the start as well.
+    start.txx[i] += soil.txx[i], start.tyy[i] += soil.tyy[i], start.txy[i] += soil.txy[i];
     move_from(soil, start, i, dt);
-    soil.txx[i] = t.xx, soil.tyy[i] = t.yy, soil.txy[i] = t.xy;
     soil.x[i] += 0.5 * dt * soil.vx[i];
     soil.y[i] += 0.5 * dt * soil.vy[i];
   }

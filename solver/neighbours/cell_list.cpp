@@ -6,8 +6,8 @@
 namespace talus {
 
 namespace {
-// A stray particle far away must not blow the grid up: beyond this many cells the grid stops and the rest is clamped into its border.
-constexpr std::int64_t max_cells_per_axis = 16384;
+// A stray particle far away must not blow the grid up: beyond this size the grid stops and the rest is clamped into its border.
+constexpr std::int64_t max_cells = 1 << 22, max_rows = 1 << 11;
 }  // namespace
 
 void CellList::build(std::span<const double> x, std::span<const double> y, double reach) {
@@ -23,12 +23,12 @@ void CellList::build(std::span<const double> x, std::span<const double> y, doubl
   const auto [x_lo, x_hi] = std::minmax_element(x.begin(), x.end());
   const auto [y_lo, y_hi] = std::minmax_element(y.begin(), y.end());
   lo_ = {*x_lo, *y_lo};
-  const auto cells = [&](double extent) {
+  const auto cells = [&](double extent, std::int64_t most) {
     const double c = std::floor(extent * inverse_cell_) + 1.0;
-    return c < static_cast<double>(max_cells_per_axis) ? static_cast<std::int64_t>(c) : max_cells_per_axis;
+    return c < static_cast<double>(most) ? static_cast<std::int64_t>(c) : most;
   };
-  columns_ = cells(*x_hi - *x_lo);
-  rows_ = cells(*y_hi - *y_lo);
+  rows_ = cells(*y_hi - *y_lo, max_rows);
+  columns_ = cells(*x_hi - *x_lo, max_cells / rows_);
   starts_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
   for (std::size_t i = 0; i < n; ++i) {
     cell_of_[i] = static_cast<std::uint32_t>(row(y[i]) * columns_ + column(x[i]));

@@ -1,0 +1,31 @@
+#include "material/equation_of_state.hpp"
+
+#include <gtest/gtest.h>
+
+namespace talus {
+namespace {
+
+TEST(EquationOfState, SlopeAtTheReferenceDensityIsTheSpeedOfSoundSquared) {
+  const auto eos = EquationOfState::weakly_compressible(2200, 150);
+  const double d = 1e-3;
+  EXPECT_NEAR((eos.pressure(2200 + d) - eos.pressure(2200 - d)) / (2 * d), 150.0 * 150.0, 1e-3);
+  EXPECT_EQ(eos.pressure(2200), 0.0);
+}
+
+TEST(EquationOfState, IsTheSeventhPower) {
+  const EquationOfState eos{1000, 3e6};
+  EXPECT_NEAR(eos.pressure(1100), 3e6 * (std::pow(1.1, 7) - 1), 1e-6);
+}
+
+TEST(EquationOfState, DensityInvertsPressure) {
+  const auto eos = EquationOfState::weakly_compressible(1850, 90);
+  for (const double p : {-1e5, 0.0, 3e4, 2e6}) EXPECT_NEAR(eos.pressure(eos.density(p)), p, 1e-12 * eos.B);
+}
+
+TEST(EquationOfState, LooseSoilCarriesNoTension) {
+  EXPECT_EQ(without_tension(-5.0), 0.0);
+  EXPECT_EQ(without_tension(5.0), 5.0);
+}
+
+}  // namespace
+}  // namespace talus

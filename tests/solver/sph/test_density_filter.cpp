@@ -1,0 +1,71 @@
+#include "sph/density_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include "random_soil.hpp"
+
+namespace talus {
+namespace {
+
+using namespace testing_support;
+
+TEST(DensityDiffusion, LeavesAHydrostaticProfileAlone) {
+  const double rho0 = 1900, c_s = 60;
+  const Vec2 g{0.4, -9.81}, r_ij{0.03, 0.11};  // i sits above j
+  const double rho_ji = -rho0 * dot(g, r_ij) / (c_s * c_s);
+  EXPECT_NEAR(diffusion_term(1.0, rho_ji, rho0, g, c_s, r_ij, -7.0), 0.0, 1e-12);
+  EXPECT_GT(rho_ji, 0.0) << "the lower one is denser";
+}
+
+TEST(DensityDiffusion, FlowsFromDenseToLight) { EXPECT_GT(diffusion_term(0.01, 5.0, 2000, {}, 60, {0.1, 0}, -7.0), 0.0); }
+
+TEST(DensityDiffusion, ConservesMassForEqualVolumes) {
+  FlowConstants k = constants(0.1);
+  Soil soil = random_soil(12, 12, 0.1, 41);
+  for (std::size_t i = 0; i < soil.size(); ++i) soil.m[i] = soil.rho[i] * 0.01, soil.vx[i] = soil.vy[i] = 0;
+  WallParticles none;
+  CellList no_cells;
+  no_cells.build({}, {}, 1.0);
+  const CellList cells = sorted(soil, 2 * k.h);
+  RightHandSide(k).evaluate(soil, none, cells, no_cells);
+  double sum = 0, size = 0;
+  for (const double d : soil.drho) sum += d, size += std::abs(d);
+  EXPECT_GT(size, 0.0);
+  EXPECT_NEAR(sum, 0.0, 1e-12 * size);
+}
+
+TEST(ShepardFilter, KeepsAUniformDensityAndSmoothsARandomOne) {
+  const FlowConstants k = constants(0.1);
+  WallParticles none;
+  CellList no_cells;
+  no_cells.build({}, {}, 1.0);
+  Soil soil = random_soil(12, 12, 0.1, 43);
+  const CellList cells = sorted(soil, 2 * k.h);
+  const auto spread = [&] {  // standard deviation
+    double sum = 0, sum2 = 0;
+    for (const double r : soil.rho) sum += r - 2000, sum2 += (r - 2000) * (r - 2000);
+    const auto n = static_cast<double>(soil.size());
+    return std::sqrt(sum2 / n - sum * sum / (n * n));
+  };
+  const double before = spread();
+  RightHandSide(k).filter_density(soil, none, cells, no_cells);
+  EXPECT_LT(spread(), 0.6 * before);
+  soil.rho.assign(soil.size(), 2050.0);
+  RightHandSide(k).filter_density(soil, none, cells, no_cells);
+  for (const double r : soil.rho) ASSERT_NEAR(r, 2050.0, 1e-9);
+}
+
+TEST(ShepardFilter, DoesNotMixTheDensitiesOfTwoLayers) {
+  const FlowConstants k = constants(0.1, {0, -9.81}, {{"a", 2000, 0, 0, 0}, {"b", 1500, 0, 0, 0}});
+  WallParticles none;
+  CellList no_cells;
+  no_cells.build({}, {}, 1.0);
+  Soil soil = random_soil(12, 12, 0.1, 47, 2);
+  const CellList cells = sorted(soil, 2 * k.h);
+  for (std::size_t i = 0; i < soil.size(); ++i) soil.rho[i] = soil.material[i] == 0 ? 2000 * 1.01 : 1500 * 1.01;
+  RightHandSide(k).filter_density(soil, none, cells, no_cells);
+  for (std::size_t i = 0; i < soil.size(); ++i) ASSERT_NEAR(soil.rho[i], soil.material[i] == 0 ? 2000 * 1.01 : 1500 * 1.01, 1e-9);
+}
+
+}  // namespace
+}  // namespace talus

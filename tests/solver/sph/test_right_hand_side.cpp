@@ -1,0 +1,251 @@
+// The loops against an oracle that knows no cells: every pair, formulas written out once more, in double.
+
+#include "sph/right_hand_side.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "random_soil.hpp"
+
+namespace talus {
+namespace {
+
+using namespace testing_support;
+
+struct Rates {
+  std::vector<double> ax, ay, drho, dtxx, p, sxx, syy, sxy, gamma_dot, wall_p, wall_sxy;
+};
+
+/// Section 1-3 of the method, straight from the equations: cubic spline, rough walls.
+Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
+  const std::size_t n = s.size(), nw = w.size();
+  Rates r;
+  for (auto* a : {&r.ax, &r.ay, &r.drho, &r.dtxx, &r.p, &r.sxx, &r.syy, &r.sxy, &r.gamma_dot}) a->assign(n, 0.0);
+  r.wall_p.assign(nw, 0.0), r.wall_sxy.assign(nw, 0.0);
+  std::vector<double> wall_sxx(nw), wall_syy(nw);
+  const double sigma = 15 / (7 * std::numbers::pi * k.h * k.h);
+  const auto W = [&](double d) {
+    const double q = d / k.h;
+    return q < 1 ? sigma * (2.0 / 3 - q * q + q * q * q / 2) : q < 2 ? sigma * std::pow(2 - q, 3) / 6 : 0.0;
+  };
+  const auto dW = [&](double d) {  // dW/dr
+    const double q = d / k.h;
+    return q < 1 ? sigma / k.h * (-2 * q + 1.5 * q * q) : q < 2 ? -sigma / k.h * 0.5 * (2 - q) * (2 - q) : 0.0;
+  };
+  const auto mirrored_speed = [&](std::size_t i, std::size_t j) {
+    const double d_i = (s.x[i] - w.x[j]) * w.nx[j] + (s.y[i] - w.y[j]) * w.ny[j] - w.depth[j];
+    return std::min(k.walls.b_max, 1 + w.depth[j] / d_i);
+  };
+  const auto acts = [&](std::size_t i, double v_x, double v_y, double x, double y) {
+    (void)i;
+    return k.walls.contact == WallContact::always || v_x * x + v_y * y < 0;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const PointLaw& law = k.laws[static_cast<std::size_t>(s.material[i])];
+    double Lxx = 0, Lxy = 0, Lyx = 0, Lyy = 0, mass_form = 0, diffusion = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      const double x = s.x[i] - s.x[j], y = s.y[i] - s.y[j], d = std::hypot(x, y);
+      if (i == j) continue;
+      const double gx = dW(d) * x / d, gy = dW(d) * y / d, V = s.m[j] / s.rho[j];
+      Lxx += V * (s.vx[j] - s.vx[i]) * gx, Lxy += V * (s.vx[j] - s.vx[i]) * gy;
+      Lyx += V * (s.vy[j] - s.vy[i]) * gx, Lyy += V * (s.vy[j] - s.vy[i]) * gy;
+      mass_form += s.m[j] * ((s.vx[i] - s.vx[j]) * gx + (s.vy[i] - s.vy[j]) * gy);
+      if (s.material[i] == s.material[j]) {
+        const double hydrostatic = law.eos.rho0 * (k.g.x * -x + k.g.y * -y) / (k.c_s * k.c_s);
+        diffusion += V * (s.rho[j] - s.rho[i] - hydrostatic) * (-x * gx - y * gy) / (d * d);
+      }
+    }
+    for (std::size_t j = 0; j < nw; ++j) {
+      const double x = s.x[i] - w.x[j], y = s.y[i] - w.y[j], d = std::hypot(x, y), b = mirrored_speed(i, j);
+      if (!acts(i, b * s.vx[i], b * s.vy[i], x, y)) continue;
+      const double gx = dW(d) * x / d, gy = dW(d) * y / d;
+      Lxx -= w.volume * b * s.vx[i] * gx, Lxy -= w.volume * b * s.vx[i] * gy;
+      Lyx -= w.volume * b * s.vy[i] * gx, Lyy -= w.volume * b * s.vy[i] * gy;
+      mass_form += s.rho[i] * w.volume * b * (s.vx[i] * gx + s.vy[i] * gy);
+    }
+    r.drho[i] = k.numerics.continuity == Continuity::mass ? mass_form : -s.rho[i] * (Lxx + Lyy);
+    if (k.numerics.density_filter == DensityFilter::delta_sph) r.drho[i] += 2 * k.numerics.delta * k.h * k.c_s * diffusion;
+    const double p_full = law.eos.B * (std::pow(s.rho[i] / law.eos.rho0, 7) - 1), p = std::max(p_full, 0.0);
+    const double third = (Lxx + Lyy) / 3, exx = Lxx - third, eyy = Lyy - third, ezz = -third, exy = (Lxy + Lyx) / 2;
+    const double norm2_e = exx * exx + eyy * eyy + ezz * ezz + 2 * exy * exy;
+    const bool printed = k.rheology.shear_rate == ShearRate::paper;
+    r.gamma_dot[i] = std::sqrt((printed ? 2.0 / 3 : 2.0) * norm2_e);
+    const double tau_y = law.c + p * s.tan_phi[i];
+    r.p[i] = p;
+    if (k.rheology.yield == Yield::regularized) {
+      const double eta = law.bingham.eta + tau_y / std::max(r.gamma_dot[i], 1e-3);
+      r.sxx[i] = -p + 2 * eta * exx, r.syy[i] = -p + 2 * eta * eyy, r.sxy[i] = 2 * eta * exy;
+    } else {
+      double txx = s.txx[i], tyy = s.tyy[i], txy = s.txy[i];
+      const double size = std::sqrt((txx * txx + tyy * tyy + (txx + tyy) * (txx + tyy) + 2 * txy * txy) / 2);
+      const double limit = printed ? std::sqrt(3.0) * tau_y : tau_y;
+      if (size > limit) txx *= limit / size, tyy *= limit / size, txy *= limit / size;
+      r.dtxx[i] = (Lxy - Lyx) * txy + 2 * law.G * exx;
+      r.sxx[i] = -p + txx + 2 * law.bingham.eta * exx, r.syy[i] = -p + tyy + 2 * law.bingham.eta * eyy;
+      r.sxy[i] = txy + 2 * law.bingham.eta * exy;
+    }
+  }
+  for (std::size_t q = 0; q < nw; ++q) {
+    double sum = 0, p = 0, txx = 0, tyy = 0, txy = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      const double x = w.x[q] - s.x[j], y = w.y[q] - s.y[j], weight = W(std::hypot(x, y));
+      sum += weight, p += weight * (r.p[j] + s.rho[j] * (k.g.x * x + k.g.y * y));
+      txx += weight * (r.sxx[j] + r.p[j]), tyy += weight * (r.syy[j] + r.p[j]), txy += weight * r.sxy[j];
+    }
+    if (sum == 0) continue;
+    r.wall_p[q] = std::max(p / sum, 0.0);
+    wall_sxx[q] = txx / sum - r.wall_p[q], wall_syy[q] = tyy / sum - r.wall_p[q], r.wall_sxy[q] = txy / sum;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    r.ax[i] = k.g.x, r.ay[i] = k.g.y;
+    const auto viscous = [&](double v_x, double v_y, double x, double y, double rho) {
+      const double vr = v_x * x + v_y * y;
+      if (vr >= 0) return 0.0;
+      const double mu = k.h * vr / (x * x + y * y + 0.01 * k.h * k.h);
+      return (-k.numerics.alpha * k.c_s * mu + k.numerics.beta * mu * mu) / rho;
+    };
+    for (std::size_t j = 0; j < n; ++j) {
+      if (i == j) continue;
+      const double x = s.x[i] - s.x[j], y = s.y[i] - s.y[j], d = std::hypot(x, y), gx = dW(d) * x / d, gy = dW(d) * y / d;
+      const double Pi = viscous(s.vx[i] - s.vx[j], s.vy[i] - s.vy[j], x, y, (s.rho[i] + s.rho[j]) / 2), rr = s.rho[i] * s.rho[j];
+      r.ax[i] += s.m[j] * (((r.sxx[i] + r.sxx[j]) / rr - Pi) * gx + (r.sxy[i] + r.sxy[j]) / rr * gy);
+      r.ay[i] += s.m[j] * ((r.sxy[i] + r.sxy[j]) / rr * gx + ((r.syy[i] + r.syy[j]) / rr - Pi) * gy);
+    }
+    for (std::size_t j = 0; j < nw; ++j) {
+      const double x = s.x[i] - w.x[j], y = s.y[i] - w.y[j], d = std::hypot(x, y), b = mirrored_speed(i, j);
+      if (!acts(i, b * s.vx[i], b * s.vy[i], x, y)) continue;
+      const double gx = dW(d) * x / d, gy = dW(d) * y / d, Pi = viscous(b * s.vx[i], b * s.vy[i], x, y, s.rho[i]);
+      const double V = w.volume / s.rho[i];
+      r.ax[i] += V * ((r.sxx[i] + wall_sxx[j] - s.rho[i] * s.rho[i] * Pi) * gx + (r.sxy[i] + r.wall_sxy[j]) * gy);
+      r.ay[i] += V * ((r.sxy[i] + r.wall_sxy[j]) * gx + (r.syy[i] + wall_syy[j] - s.rho[i] * s.rho[i] * Pi) * gy);
+    }
+  }
+  return r;
+}
+
+void expect_close(const std::vector<double>& actual, const std::vector<double>& expected, const char* what) {
+  double scale = 0.0;
+  for (const double e : expected) scale = std::max(scale, std::abs(e));
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i) ASSERT_NEAR(actual[i], expected[i], 1e-11 * scale) << what << " of " << i;
+}
+
+struct Option {
+  const char* name;
+  void (*set)(FlowConstants&);
+};
+
+class RightHandSideOracle : public testing::TestWithParam<Option> {};
+
+TEST_P(RightHandSideOracle, EqualsEveryPairSummedPlainly) {
+  const double dx = 0.1;
+  FlowConstants k = constants(dx, {1.3, -9.81}, {{"a", 2000, 0.5, 700, 30}, {"b", 1900, 0.5, 100, 90}});
+  k.numerics.beta = 0.4;
+  GetParam().set(k);
+  Soil soil = random_soil(14, 9, dx, 11, 2);
+  WallParticles walls = flat_walls(14, dx);
+  const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
+  const Rates expected = brute_force(k, soil, walls);
+  RightHandSide(k).evaluate(soil, walls, soil_cells, wall_cells);
+  expect_close(soil.drho, expected.drho, "drho");
+  expect_close(soil.p, expected.p, "p");
+  expect_close(soil.gamma_dot, expected.gamma_dot, "gamma_dot");
+  expect_close(soil.sxx, expected.sxx, "sxx");
+  expect_close(soil.syy, expected.syy, "syy");
+  expect_close(soil.sxy, expected.sxy, "sxy");
+  expect_close(soil.dtxx, expected.dtxx, "dtxx");
+  expect_close(walls.p, expected.wall_p, "wall p");
+  expect_close(walls.sxy, expected.wall_sxy, "wall sxy");
+  expect_close(soil.ax, expected.ax, "ax");
+  expect_close(soil.ay, expected.ay, "ay");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, RightHandSideOracle,
+    testing::Values(Option{"sound", [](FlowConstants&) {}},
+                    Option{"regularized", [](FlowConstants& k) { k.rheology.yield = Yield::regularized; }},
+                    Option{"paper_norm", [](FlowConstants& k) { k.rheology.yield = Yield::regularized, k.rheology.shear_rate = ShearRate::paper; }},
+                    Option{"paper_norm_elastic", [](FlowConstants& k) { k.rheology.shear_rate = ShearRate::paper; }},
+                    Option{"approaching", [](FlowConstants& k) { k.walls.contact = WallContact::approaching; }},
+                    Option{"mass_form", [](FlowConstants& k) { k.numerics.continuity = Continuity::mass; }},
+                    Option{"no_diffusion", [](FlowConstants& k) { k.numerics.density_filter = DensityFilter::none; }}),
+    [](const auto& param) { return std::string(param.param.name); });
+
+/// Soil and its rates by id, without walls.
+Soil evaluated(Soil soil, const FlowConstants& k) {
+  WallParticles none;
+  CellList no_cells;
+  no_cells.build({}, {}, 1.0);
+  const CellList cells = sorted(soil, 2 * k.h);
+  RightHandSide(k).evaluate(soil, none, cells, no_cells);
+  CellList unused;
+  std::vector<std::uint32_t> place(soil.size());
+  for (std::uint32_t i = 0; i < soil.size(); ++i) place[static_cast<std::size_t>(soil.id[i])] = i;
+  std::vector<double> scratch;
+  for_each_real(soil, [&](const char*, auto& a) { permute(a, place, scratch); });
+  return soil;
+}
+
+TEST(RightHandSide, PairsConserveLinearMomentumExactly) {
+  const FlowConstants k = constants(0.1, {0.7, -9.81});
+  const Soil s = evaluated(random_soil(15, 12, 0.1, 5), k);
+  Vec2 force;
+  double mass = 0, size = 0;
+  for (std::size_t i = 0; i < s.size(); ++i) force += s.m[i] * Vec2{s.ax[i], s.ay[i]}, mass += s.m[i], size += s.m[i] * std::hypot(s.ax[i], s.ay[i]);
+  EXPECT_NEAR(force.x, mass * 0.7, 1e-13 * size);
+  EXPECT_NEAR(force.y, mass * -9.81, 1e-13 * size);
+}
+
+TEST(RightHandSide, TurnsWithTheProblem) {
+  const double a = 0.61, c = std::cos(a), s = std::sin(a);
+  const auto turn = [&](double& x, double& y) { const double x0 = x; x = c * x0 - s * y, y = s * x0 + c * y; };
+  FlowConstants k = constants(0.1, {0.7, -9.81});
+  const Soil original = random_soil(13, 11, 0.1, 23);
+  Soil turned = original;
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    turn(turned.x[i], turned.y[i]), turn(turned.vx[i], turned.vy[i]);
+    const double xx = original.txx[i], yy = original.tyy[i], xy = original.txy[i];
+    turned.txx[i] = c * c * xx + s * s * yy - 2 * s * c * xy, turned.tyy[i] = s * s * xx + c * c * yy + 2 * s * c * xy;
+    turned.txy[i] = s * c * (xx - yy) + (c * c - s * s) * xy;
+  }
+  Soil before = evaluated(original, k);
+  turn(k.g.x, k.g.y);
+  const Soil after = evaluated(turned, k);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    turn(before.ax[i], before.ay[i]);
+    ASSERT_NEAR(after.ax[i], before.ax[i], 1e-7);  // of accelerations of 1e4 m/s2
+    ASSERT_NEAR(after.ay[i], before.ay[i], 1e-7);
+    ASSERT_NEAR(after.drho[i], before.drho[i], 1e-7);
+  }
+}
+
+TEST(RightHandSide, MirrorsWithTheProblem) {
+  const FlowConstants k = constants(0.1);
+  const Soil original = random_soil(13, 11, 0.1, 29);
+  Soil mirrored_soil = original;
+  for (std::size_t i = 0; i < original.size(); ++i) mirrored_soil.x[i] *= -1, mirrored_soil.vx[i] *= -1, mirrored_soil.txy[i] *= -1;
+  const Soil before = evaluated(original, k), after = evaluated(mirrored_soil, k);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    ASSERT_NEAR(after.ax[i], -before.ax[i], 1e-7);
+    ASSERT_NEAR(after.ay[i], before.ay[i], 1e-7);
+    ASSERT_NEAR(after.dtxy[i], -before.dtxy[i], 1e-3);  // of rates of 1e7 Pa/s
+  }
+}
+
+TEST(RightHandSide, UniformMotionFeelsNothingButGravity) {
+  FlowConstants k = constants(0.1, {0.0, -9.81}, {{"a", 2000, 0.0, 0, 5}});
+  Soil soil = random_soil(15, 15, 0.1, 31);
+  for (std::size_t i = 0; i < soil.size(); ++i)
+    soil.vx[i] = 3, soil.vy[i] = -2, soil.rho[i] = 2000, soil.tan_phi[i] = 0, soil.txx[i] = soil.tyy[i] = soil.txy[i] = 0;
+  k.numerics.density_filter = DensityFilter::none;
+  const Soil s = evaluated(soil, k);
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    ASSERT_NEAR(s.drho[i], 0.0, 1e-9);
+    ASSERT_NEAR(s.ax[i], 0.0, 1e-9);
+    ASSERT_NEAR(s.ay[i], -9.81, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace talus

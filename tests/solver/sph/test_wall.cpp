@@ -1,0 +1,87 @@
+#include "sph/wall.hpp"
+
+#include <gtest/gtest.h>
+
+#include "random_soil.hpp"
+
+namespace talus {
+namespace {
+
+using namespace testing_support;
+
+TEST(Wall, MirroredVelocityVanishesOnTheWallLine) {
+  // Linear between soil (d_i above, v) and wall particle (d_j below, v - b v): zero at the line when b = 1 + d_j/d_i.
+  const double d_i = 0.3, d_j = 0.1, b = mirror_ratio(d_i, d_j, 99.0), v = 2.0;
+  const double v_wall = v - b * v;
+  EXPECT_NEAR(v_wall + (v - v_wall) * d_j / (d_i + d_j), 0.0, 1e-15);
+}
+
+TEST(Wall, MirrorRatioIsCapped) {
+  EXPECT_DOUBLE_EQ(mirror_ratio(0.1, 0.3, 1.5), 1.5);
+  EXPECT_DOUBLE_EQ(mirror_ratio(-0.1, 0.3, 1.5), 1.5);
+  EXPECT_DOUBLE_EQ(mirror_ratio(0.0, 0.3, 1.5), 1.5);
+}
+
+TEST(Wall, SmoothWallKeepsTheTangentialVelocity) {
+  const Vec2 n{0.6, 0.8}, t{-0.8, 0.6}, v{3, 1};
+  const Vec2 r = wall_relative_velocity(v, n, 1.4, WallSlip::free_slip);
+  EXPECT_NEAR(dot(r, t), 0.0, 1e-15);
+  EXPECT_NEAR(dot(r, n), 1.4 * dot(v, n), 1e-15);
+  EXPECT_EQ(wall_relative_velocity(v, n, 1.4, WallSlip::no_slip), 1.4 * v);
+}
+
+TEST(Wall, InterfaceYieldsAtTheSmallerAngleWithinOneSpacing) {
+  EXPECT_DOUBLE_EQ(interface_tan_phi(0.5, 0.2, 0.09, 0.1), 0.2);
+  EXPECT_DOUBLE_EQ(interface_tan_phi(0.1, 0.2, 0.09, 0.1), 0.1);
+  EXPECT_DOUBLE_EQ(interface_tan_phi(0.5, 0.2, 0.11, 0.1), 0.5);
+}
+
+TEST(Wall, ExtrapolationIsExactForHydrostaticPressure) {
+  // p = p0 - rho |g| y in the soil continues into the wall with the same slope.
+  const Vec2 g{0, -9.81};
+  WallStressSum sum;
+  const Vec2 wall{0.0, -0.05};
+  for (const Vec2 x : {Vec2{0.02, 0.05}, Vec2{-0.1, 0.05}, Vec2{0.04, 0.15}})
+    sum.add(1.0 / (1.0 + norm2(x)), 5000 - 2000 * 9.81 * x.y, {}, 2000, 2000, g, wall - x, 50);
+  EXPECT_NEAR(sum.p / sum.weight, 5000 + 2000 * 9.81 * 0.05, 1e-9);
+}
+
+/// Soil sliding along a flat wall at 3 m/s under pressure; returns it evaluated.
+Soil sliding(WallSlip slip, double phi_wall) {
+  const double dx = 0.1;
+  FlowConstants k = constants(dx, {0, 0}, {{"a", 2000, 0.5, 0, 0}});
+  k.walls.slip = slip, k.walls.phi = phi_wall;
+  k.rheology.yield = Yield::regularized;
+  k.numerics.density_filter = DensityFilter::none, k.numerics.alpha = 0;
+  Soil soil = random_soil(20, 8, dx, 3);
+  for (std::size_t i = 0; i < soil.size(); ++i) {
+    soil.x[i] = static_cast<double>(i % 20) * dx, soil.y[i] = static_cast<double>(i / 20) * dx;
+    soil.vx[i] = 3, soil.vy[i] = 0, soil.m[i] = 2000 * dx * dx, soil.tan_phi[i] = 0.5;
+    soil.rho[i] = k.laws[0].eos.density(1e4);
+  }
+  WallParticles walls = flat_walls(20, dx);
+  const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
+  RightHandSide(k).evaluate(soil, walls, soil_cells, wall_cells);
+  return soil;
+}
+
+/// Drag on the lowest two rows in the middle third, per metre of wall [Pa].
+double traction(const Soil& s) {
+  double force = 0;
+  for (std::size_t i = 0; i < s.size(); ++i)
+    if (s.id[i] % 20 >= 7 && s.id[i] % 20 < 13 && s.id[i] / 20 < 4) force += s.m[i] * s.ax[i];
+  return force / (6 * 0.1);
+}
+
+TEST(Wall, RoughWallDragsAtMohrCoulomb) { EXPECT_NEAR(traction(sliding(WallSlip::no_slip, 0)), -1e4 * 0.5, 0.15 * 1e4 * 0.5); }
+
+TEST(Wall, FrictionOfTheWallScalesTheDrag) {
+  const double rough = traction(sliding(WallSlip::no_slip, 0)), smoother = traction(sliding(WallSlip::friction, std::atan(0.2)));
+  EXPECT_LT(smoother, 0.0);
+  EXPECT_NEAR(smoother / rough, 0.2 / 0.5, 0.2);  // the second row still shears a little at the soil's own angle
+}
+
+TEST(Wall, FreeSlipDragsNothing) { EXPECT_NEAR(traction(sliding(WallSlip::free_slip, 0)), 0.0, 1e-6); }
+
+}  // namespace
+}  // namespace talus
