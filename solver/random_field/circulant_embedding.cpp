@@ -13,6 +13,8 @@ namespace {
 
 constexpr double clip_tolerance = 1e-8;  // largest error of the covariance, relative to C(0), that clipping may make
 
+constexpr double hair = 1e-9;  // parts of a spacing that count as rounding
+
 using Spectrum = std::vector<std::complex<double>>;
 
 /// The smallest 4 * 2^a 3^b 5^c that is at least n: a length that the FFT is fast at.
@@ -50,7 +52,7 @@ double default_spacing(const FieldSpec& spec, double dx) {
   const double ell = spec.direction == FieldDirection::x   ? spec.ell_x
                      : spec.direction == FieldDirection::y ? spec.ell_y
                                                            : std::min(spec.ell_x, spec.ell_y);
-  return std::min(ell / 4, dx);
+  return dx / (2 * std::max(1.0, std::ceil(2 * dx / ell)));
 }
 
 void check_size(double nodes) {
@@ -60,22 +62,23 @@ void check_size(double nodes) {
   throw ConfigError("/random_field/grid_spacing_m", text.str());
 }
 
-CirculantAxis axis(double lo, double hi, double ell, bool varies, const FieldSpec& spec, double dx) {
+CirculantAxis axis(double lo, double hi, double ell, bool varies, const FieldSpec& spec, double dx, double anchor) {
   if (!varies) return CirculantAxis::constant();
-  return {lo, hi, spec.grid_spacing.value_or(default_spacing(spec, dx)), {ell, spec.cell_average ? dx : 0.0}};
+  const double spacing = spec.grid_spacing.value_or(default_spacing(spec, dx));
+  const double first = anchor + std::floor((lo - anchor) / spacing + hair) * spacing;
+  return {first, hi, spacing, {ell, spec.cell_average ? dx : 0.0}};
 }
 
 }  // namespace
 
 // The exponential covariance is convex, so the smallest embedding is nonnegative definite (Dietrich & Newsam 1997). The
 // averaged one is not; there the period grows until the kink at half of it has faded.
-CirculantAxis::CirculantAxis(double lo, double hi, double spacing, const ExponentialCovariance& covariance) : lo_(lo) {
-  const double intervals = std::max(1.0, std::ceil((hi - lo) / spacing * (1 - 1e-12)));
+CirculantAxis::CirculantAxis(double lo, double hi, double spacing, const ExponentialCovariance& covariance)
+    : lo_(lo), spacing_(spacing) {
+  const double intervals = std::max(1.0, std::ceil((hi - lo) / spacing - hair));
   check_size(2 * intervals);
   nodes_ = static_cast<std::size_t>(intervals) + 1;
-  spacing_ = (hi - lo) / intervals;
   variance_ = covariance(0);
-  neighbour_correlation_ = covariance(spacing_) / variance_;
   std::size_t period = fast_length(2 * (nodes_ - 1));
   root_ = eigenvalues(covariance, spacing_, period);
   while (clipping_error(root_) > clip_tolerance) {
@@ -98,19 +101,17 @@ void CirculantAxis::filter(std::span<double> row) const {
   fft.inv(row.data(), spectrum.data(), n);
 }
 
-// Var(left Z_0 + right Z_1) = C(0) (left^2 + right^2 + 2 left right r), r the correlation of neighbouring nodes.
 CirculantAxis::Stencil CirculantAxis::stencil(double x) const {
   if (nodes_ == 1) return {};
   const double position = std::clamp((x - lo_) / spacing_, 0.0, static_cast<double>(nodes_ - 1));
   const std::size_t left = std::min(static_cast<std::size_t>(position), nodes_ - 2);
   const double t = position - static_cast<double>(left);
-  const double norm = std::sqrt((1 - t) * (1 - t) + t * t + 2 * t * (1 - t) * neighbour_correlation_);
-  return {left, left + 1, (1 - t) / norm, t / norm};
+  return {left, left + 1, 1 - t, t};
 }
 
-CirculantEmbedding::CirculantEmbedding(const FieldSpec& spec, Box domain, double dx)
-    : x_(axis(domain.lo.x, domain.hi.x, spec.ell_x, spec.direction != FieldDirection::y, spec, dx)),
-      y_(axis(domain.lo.y, domain.hi.y, spec.ell_y, spec.direction != FieldDirection::x, spec, dx)) {
+CirculantEmbedding::CirculantEmbedding(const FieldSpec& spec, Box domain, double dx, Vec2 anchor)
+    : x_(axis(domain.lo.x, domain.hi.x, spec.ell_x, spec.direction != FieldDirection::y, spec, dx, anchor.x)),
+      y_(axis(domain.lo.y, domain.hi.y, spec.ell_y, spec.direction != FieldDirection::x, spec, dx, anchor.y)) {
   check_size(static_cast<double>(x_.period()) * static_cast<double>(y_.period()));
 }
 

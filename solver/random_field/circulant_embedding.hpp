@@ -18,8 +18,8 @@ inline constexpr double max_grid = 2e7;
 /// matrix is a block of a circulant one, whose symmetric square root the FFT applies.
 class CirculantAxis {
  public:
-  /// @param lo, hi   ends of the axis [m]; both are nodes
-  /// @param spacing  largest distance of nodes [m]
+  /// @param lo, hi   ends of the axis [m]; the nodes reach from `lo` to `hi` or a part of a spacing beyond
+  /// @param spacing  distance of nodes [m]
   /// @throws ConfigError (/random_field/grid_spacing_m) when no padding makes the circulant matrix nonnegative definite
   CirculantAxis(double lo, double hi, double spacing, const ExponentialCovariance& covariance);
   /// The axis along which the field does not vary: one node, variance 1.
@@ -27,18 +27,17 @@ class CirculantAxis {
 
   std::size_t nodes() const { return nodes_; }
   std::size_t period() const { return root_.size(); }  ///< nodes of the periodic field
-  double spacing() const { return spacing_; }          ///< distance of nodes [m]
   double variance() const { return variance_; }        ///< C(0) [-]
 
   /// What one row of white noise (period() numbers) becomes: period() values with the covariance of the axis.
   void filter(std::span<double> row) const;
 
-  /// Linear interpolation between two nodes, scaled so that the variance is C(0) between nodes too.
+  /// Linear interpolation between two nodes.
   struct Stencil {
     std::size_t left = 0, right = 0;
     double left_weight = 1, right_weight = 0;
   };
-  /// @param x  coordinate [m]; one beyond an end is taken to that end
+  /// @param x  coordinate [m]; one beyond the last node is taken there
   Stencil stencil(double x) const;
 
  private:
@@ -46,28 +45,29 @@ class CirculantAxis {
   double lo_ = 0.0;
   double spacing_ = 1.0;
   double variance_ = 1.0;
-  double neighbour_correlation_ = 1.0;  ///< C(spacing)/C(0)
   std::size_t nodes_ = 1;
   std::vector<double> root_ = {1.0};  ///< square roots of the eigenvalues
 };
 
 /// Sampler of the field with covariance exp(-|dx|/ell_x - |dy|/ell_y) on a grid, interpolated to points.
 ///
-/// Plain bilinear interpolation would lose variance between the nodes (at a spacing of ell/4 up to 21 % in the middle
-/// of a cell, 14 % on average); so its weights are scaled to unit variance at every point. Correlations of points that
-/// do not lie on nodes remain approximate: too high by at most 0.03 along an axis at a spacing of ell/4.
+/// On nodes the covariance is exact, and the particles of a slide lie on nodes unless `spec.grid_spacing` says
+/// otherwise. Elsewhere bilinear interpolation loses variance: with r = exp(-spacing/ell) along either axis the
+/// variance is (1+r)/2 in the middle between two nodes and (2+r)/3 on average. At a spacing of ell/4 a two-dimensional
+/// field loses 21 % in the middle of a cell, 14 % on average; averages over a few cells hardly change.
 class CirculantEmbedding {
  public:
   /// @param spec    what is wanted; its ranges have been checked
-  /// @param domain  rectangle that the grid covers [m]; points outside take the value at its nearest point
-  /// @param dx      particle spacing [m]: side of the cells of `cell_average`, upper bound of the default grid spacing
+  /// @param domain  rectangle that the grid covers [m]; points outside the grid take the value at its nearest point
+  /// @param dx      particle spacing [m]: side of the cells of `cell_average`, twice the largest default grid spacing
+  /// @param anchor  a point that is a node, inside the domain or not [m]; particles stand at whole halves of dx from it
   /// @throws ConfigError (/random_field/grid_spacing_m) when the grid is too large or the embedding is impossible
-  CirculantEmbedding(const FieldSpec& spec, Box domain, double dx);
+  CirculantEmbedding(const FieldSpec& spec, Box domain, double dx, Vec2 anchor);
 
   /// Number of coefficients: white noise on the whole periodic grid.
   std::size_t terms() const { return x_.period() * y_.period(); }
   double captured_variance() const { return 1.0; }
-  /// Variance of Z [-]: 1, less what averaging over cells takes away.
+  /// Variance of Z on nodes [-]: 1, less what averaging over cells takes away.
   double variance() const { return x_.variance() * y_.variance(); }
   /// Z at points, shape of `points` [-].
   std::vector<double> gaussian(std::span<const Vec2> points, std::span<const double> xi) const;

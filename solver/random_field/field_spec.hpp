@@ -19,7 +19,7 @@ struct FieldSpec {
   FieldDirection direction = FieldDirection::xy;
   double ell_x = 1.0;                ///< correlation length along x [m], > 0 (half the scale of fluctuation)
   double ell_y = 1.0;                ///< correlation length along y [m], > 0
-  std::optional<double> mu;          ///< mean of ln(tan phi) [-]; unset: ln(tan phi) of each particle's material
+  std::optional<double> mu = {};     ///< mean of ln(tan phi) [-]; unset: ln(tan phi) of each particle's material
   double sigma = 0.0;                ///< standard deviation of ln(tan phi) [-]; a negative one mirrors the draws
   FieldSampler sampler = FieldSampler::karhunen_loeve;
   Truncation truncation = Truncation::largest;
@@ -27,9 +27,11 @@ struct FieldSpec {
   double variance_share = 0.95;      ///< for `variance_share`, in (0, 1)
   RootIntervals root_intervals = RootIntervals::complete;
   bool cell_average = false;         ///< average the field over each particle's cell dx by dx
-  std::optional<Box> domain;         ///< where the modes are solved [m]; unset: the bounding box of the slide
-  std::vector<double> xi;            ///< given standard normal coefficients instead of drawn ones; empty: drawn
-  std::optional<double> grid_spacing;  ///< grid of the circulant embedding [m]; unset: min(ell)/4 or dx, whichever is smaller
+  std::optional<Box> domain = {};    ///< where the modes are solved [m]; unset: the bounding box of the slide
+  std::vector<double> xi = {};       ///< given standard normal coefficients instead of drawn ones; empty: drawn
+  /// Grid of the circulant embedding [m]; unset: dx/2, or the largest whole fraction of it that is at most min(ell)/4.
+  /// The particles that fill a slide then lie on nodes.
+  std::optional<double> grid_spacing = {};
   bool operator==(const FieldSpec&) const = default;
 };
 

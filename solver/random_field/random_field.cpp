@@ -1,5 +1,6 @@
 #include "random_field/random_field.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -29,8 +30,8 @@ std::vector<Fault> faults(const FieldSpec& spec, Box domain, double dx) {
   };
   require(!along_x || positive(spec.ell_x), "/correlation_length_x_m", "must be positive");
   require(!along_y || positive(spec.ell_y), "/correlation_length_y_m", "must be positive");
-  require(!along_x || positive(domain.width()), "/domain", "has no extent along x");
-  require(!along_y || positive(domain.height()), "/domain", "has no extent along y");
+  require(!along_x || positive(domain.width()), "/domain_m", "has no extent along x");
+  require(!along_y || positive(domain.height()), "/domain_m", "has no extent along y");
   require(!karhunen_loeve || by_share || (spec.terms >= 1 && std::cmp_less_equal(spec.terms, max_modes)), "/terms",
           "must be in 1 .. " + std::to_string(max_modes));
   require(!karhunen_loeve || !by_share || (spec.variance_share > 0 && spec.variance_share < 1), "/variance_share",
@@ -45,7 +46,7 @@ Sampler make_sampler(const FieldSpec& spec, Box slide_box, double dx) {
   const Box domain = spec.domain.value_or(slide_box);
   if (auto all = faults(spec, domain, dx); !all.empty()) throw ConfigError(std::move(all));
   if (spec.sampler == FieldSampler::karhunen_loeve) return KarhunenLoeve(spec, domain, dx);
-  return CirculantEmbedding(spec, domain, dx);
+  return CirculantEmbedding(spec, domain, dx, slide_box.lo);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ class RandomField {
   /// [- , Karhunen-Loeve: sum lambda / (2 a_x 2 a_y)].
   double captured_variance() const;
   /// Variance of the values that gaussian() returns, averaged over the domain [-]: captured_variance() less what
-  /// `cell_average` takes away.
+  /// `cell_average` takes away; circulant embedding: on the nodes of its grid.
   double variance() const;
   /// Coefficients of one realization: counter-based (Philox), keyed by (seed, realization, mode); never depend on anything
   /// else. With `spec.xi`, those.
@@ -39,7 +39,7 @@ class RandomField {
   std::vector<double> draw_stratified(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization,
                                       std::size_t modes) const;
   /// Z at points [-]; `xi` has terms() entries (else std::invalid_argument). Points outside the domain take the modes'
-  /// analytic continuation; with circulant embedding the value at the domain's nearest point. Safe to call from several
+  /// analytic continuation; with circulant embedding the value at the grid's nearest point. Safe to call from several
   /// threads at once.
   std::vector<double> gaussian(std::span<const Vec2> points, std::span<const double> xi) const;
 

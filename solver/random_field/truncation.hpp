@@ -17,7 +17,7 @@ struct ModePair {
 
 /// More modes than this are refused: draws and evaluation would take longer than circulant embedding, which truncates
 /// nothing.
-inline constexpr std::size_t max_modes = 500'000;
+inline constexpr std::size_t max_modes = 1'000'000;
 
 /// The `count` largest products, largest first; equal ones in order of ix. Takes O(count log count) and solves only the
 /// one-dimensional modes it needs. Fewer when there are no more (both axes constant).
