@@ -1,7 +1,179 @@
+// talus field: the friction angle of one realization, as numbers or as a picture, without running it.
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
+
+#include "case/load.hpp"
 #include "cli/verbs.hpp"
+#include "cli/version.hpp"
+#include "cli/xi_file.hpp"
+#include "figures/profile.hpp"
+#include "io/vtkhdf.hpp"
+#include "monte_carlo/realization.hpp"
+#include "random_field/random_field.hpp"
 
 namespace talus::cli {
+namespace {
 
-void add_field(CLI::App& app, Action&) { app.add_subcommand("field"); }
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+struct FieldOptions {
+  fs::path case_file, xi_file, out;
+  std::vector<std::string> overrides;
+  std::optional<std::int64_t> realization;
+  std::optional<std::uint64_t> seed;
+  bool json = false;
+};
+
+// The field on the particles before they move.
+struct FieldOnParticles {
+  std::vector<Vec2> position;   // [m]
+  std::vector<double> phi_deg;  // [deg]
+  std::vector<double> tan_phi;  // [-]
+};
+
+FieldOnParticles field_on(const ParticlePlan& plan, const Strength& strength) {
+  FieldOnParticles field;
+  field.tan_phi = strength.tan_phi;
+  for (const SoilPoint& point : plan.soil) field.position.push_back(point.x);
+  for (const double tan_phi : strength.tan_phi) field.phi_deg.push_back(degrees * std::atan(tan_phi));
+  return field;
+}
+
+// Puts the coefficients of the file in place of drawn ones, and checks their number where the message can name the
+// file.
+void use_xi(Case& problem, const fs::path& file) {
+  if (!problem.field)
+    throw ConfigError("/random_field",
+                      "is missing: the case has no random field that --xi could be the coefficients of");
+  problem.field->xi.clear();
+  const std::vector<double> xi = read_xi(file);
+  const std::size_t terms = RandomField(*problem.field, bounding_box(problem.model.slide), problem.model.dx).terms();
+  if (xi.size() != terms) {
+    throw ConfigError(file.string(),
+                      "holds " + std::to_string(xi.size()) + " coefficients, the field takes " + std::to_string(terms) +
+                          " (--set random_field.terms=" + std::to_string(xi.size()) + " would make it fit)");
+  }
+  problem.field->xi = xi;
+}
+
+std::uint64_t choose_seed(const FieldOptions& options, const Case& problem) {
+  if (options.seed) return *options.seed;
+  if (problem.study.seed) return *problem.study.seed;
+  std::random_device entropy;
+  return ((std::uint64_t{entropy()} << 32) | entropy()) & ((1ull << 53) - 1);
+}
+
+ordered_json summary(const FieldOnParticles& field, const Strength& strength, const RunIdentity& identity) {
+  const auto [lo, hi] = std::minmax_element(field.phi_deg.begin(), field.phi_deg.end());
+  return {{"particles", field.position.size()},
+          {"captured_variance", strength.summary.captured_variance},
+          {"terms", strength.summary.terms},
+          {"friction_angle_deg", {{"mean", degrees * strength.summary.mean_phi}, {"min", *lo}, {"max", *hi}}},
+          {"realization", identity.realization ? ordered_json(*identity.realization) : ordered_json()},
+          {"seed", identity.realization ? ordered_json(identity.seed) : ordered_json()},
+          {"xi", strength.xi}};
+}
+
+std::string subtitle(const Strength& strength, const FieldOptions& options) {
+  std::string text = "Friction angle, ";
+  text += options.realization       ? "realization " + std::to_string(*options.realization)
+          : options.xi_file.empty() ? std::string("median")
+                                    : std::string("given coefficients");
+  text += ": mean " + figures::fixed(degrees * strength.summary.mean_phi, 2) + "°";
+  if (strength.summary.terms > 0) {
+    text += "; " + std::to_string(strength.summary.terms) + " terms carry " +
+            figures::fixed(100 * strength.summary.captured_variance, 1) + " % of the variance";
+  }
+  return text;
+}
+
+void draw(const FieldOnParticles& field, const Model& model, const figures::Stamps& stamps, const fs::path& path) {
+  Frame frame;
+  frame.n_soil = field.position.size();
+  frame.position = field.position;
+  for (const double tan_phi : field.tan_phi) frame.phi.push_back(std::atan(tan_phi));
+  const figures::Snapshot shot{&frame, figures::Colour::friction_angle, "Before the slide"};
+  figures::plot_sequence({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
+}
+
+void write(const FieldOnParticles& field, const Model& model, const figures::Stamps& stamps, const fs::path& path) {
+  const std::vector<NamedArray> arrays{{"friction_angle_deg", field.phi_deg}, {"tan_phi", field.tan_phi}};
+  if (path.extension() == ".csv") {
+    write_field_csv(path, field.position, arrays);
+  } else if (path.extension() == ".vtkhdf") {
+    write_points(path, field.position, arrays);
+  } else {
+    draw(field, model, stamps, path);
+  }
+}
+
+Exit field(const FieldOptions& options) {
+  LoadedCase loaded = load_case(options.case_file, options.overrides);
+  Case& problem = loaded.value;
+  if (!options.xi_file.empty()) use_xi(problem, options.xi_file);
+  const RunIdentity identity{choose_seed(options, problem), options.realization};
+  const ParticlePlan plan = plan_particles(problem.model);
+  const Strength soil_strength = strength(problem.model, problem.field, problem.study, plan, identity);
+  const FieldOnParticles on_particles = field_on(plan, soil_strength);
+  std::string source = "Talus " + version();
+  if (identity.realization) source += "  ·  seed " + std::to_string(identity.seed);
+  source += "  ·  case " + loaded.hash;
+  if (!options.out.empty())
+    write(on_particles, problem.model, {problem.title, subtitle(soil_strength, options), source}, options.out);
+  const ordered_json numbers = summary(on_particles, soil_strength, identity);
+  if (options.json) {
+    std::cout << numbers.dump(2) << "\n";
+  } else {
+    const ordered_json& phi = numbers["friction_angle_deg"];
+    std::cout << options.out.string() << "\n";
+    std::cerr << numbers["particles"] << " particles, friction angle " << phi["min"] << " to " << phi["max"]
+              << " deg, mean " << phi["mean"] << "; " << numbers["terms"] << " terms, "
+              << 100.0 * soil_strength.summary.captured_variance << " % of the variance\n";
+  }
+  return Exit::ok;
+}
+
+std::string known_ending(const std::string& path) {
+  const fs::path ending = fs::path(path).extension();
+  for (const char* known : {".csv", ".vtkhdf", ".svg", ".png"}) {
+    if (ending == known) return {};
+  }
+  return path + " must end in .csv, .vtkhdf, .svg or .png";
+}
+
+}  // namespace
+
+void add_field(CLI::App& app, Action& action) {
+  auto options = std::make_shared<FieldOptions>();
+  CLI::App* verb =
+      app.add_subcommand("field", "Write the friction angle of one realization as .csv, .vtkhdf, .svg or .png");
+  verb->add_option("case", options->case_file, "case file (JSON)")->required();
+  verb->add_option("--out", options->out, "file to write; the ending says what; optional with --json")
+      ->check(known_ending);
+  auto* realization = verb->add_option("--realization", options->realization,
+                                       "index of the realization, from 0; without it the median field")
+                          ->check(CLI::NonNegativeNumber);
+  verb->add_option("--seed", options->seed,
+                   "seed of the random field; otherwise the case's, otherwise a new one, which is told");
+  verb->add_option("--xi", options->xi_file,
+                   "standard normal coefficients instead of drawn ones: one a line, or a CSV column xi")
+      ->excludes(realization);
+  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")
+      ->allow_extra_args(false);
+  verb->add_flag("--json", options->json, "print a summary with the coefficients as one JSON value");
+  verb->callback([options, &action] {
+    if (options->out.empty() && !options->json) throw CLI::RequiredError("--out");
+    action = [options] { return field(*options); };
+  });
+}
 
 }  // namespace talus::cli

@@ -2,15 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "figures/gnuplot.hpp"
+#include "io/files.hpp"
 #include "math/error.hpp"
 
 namespace talus::figures {
 namespace {
 
-constexpr double margin = 24;           // px left and right of the stamps
-constexpr double px_per_character = 8;  // of the bold title, on average
+constexpr double margin = 24;  // px left and right of the stamps
+// Mean width of a character [px].
+constexpr double px_bold = 8.8;
+constexpr double px_text = 6.4;
+constexpr double px_small = 5.2;
 
 std::string font(int points, bool bold) {
   return std::string("font 'sans-serif") + (bold ? ":Bold," : ",") + std::to_string(points) + "'";
@@ -20,18 +25,23 @@ std::string font(int points, bool bold) {
 double across(const Canvas& canvas, double x) { return x / canvas.width; }
 double up(const Canvas& canvas, double y) { return 1.0 - y / canvas.height; }
 
-std::string terminal(const Canvas& canvas, const std::filesystem::path& path) {
-  const auto size = [&](int scale) {
-    return std::to_string(std::lround(scale * canvas.width)) + "," + std::to_string(std::lround(scale * canvas.height));
-  };
-  if (path.extension() == ".svg")
-    return "set terminal svg size " + size(1) + " dynamic noenhanced font 'sans-serif,10' background '#ffffff'\n";
-  if (path.extension() == ".png") {
-    const std::string scale = std::to_string(png_scale);
-    return "set terminal pngcairo size " + size(png_scale) + " noenhanced font 'sans-serif,10' fontscale " + scale +
-           " linewidth " + scale + " pointscale " + scale + " background '#ffffff'\n";
+std::string terminal(const Canvas& canvas, bool svg) {
+  const int scale = svg ? 1 : png_scale;
+  const std::string size = "size " + std::to_string(std::lround(scale * canvas.width)) + "," +
+                           std::to_string(std::lround(scale * canvas.height));
+  const std::string look = size + " noenhanced font 'sans-serif,10' background '#ffffff'";
+  if (svg) return "set terminal svg " + look + "\n";
+  const std::string times = std::to_string(scale);
+  return "set terminal pngcairo " + look + " fontscale " + times + " linewidth " + times + " pointscale " + times +
+         "\n";
+}
+
+// gnuplot's svg terminal takes "sans-serif:Bold" for the name of a family.
+void spell_bold_as_weight(std::string& svg) {
+  const std::string_view wrong = "font-family=\"sans-serif:Bold\"";
+  for (std::size_t at = 0; (at = svg.find(wrong, at)) != std::string::npos;) {
+    svg.replace(at, wrong.size(), "font-family=\"sans-serif\" font-weight=\"bold\"");
   }
-  throw IoError(path.string() + ": a figure ends in .svg or .png");
 }
 
 }  // namespace
@@ -41,13 +51,15 @@ Script begin(const Canvas& canvas, const Stamps& stamps, double reserved) {
   script("set encoding utf8");
   script("set border 3 linewidth 0.8 linecolor rgb '", ink, "'");
   script("set tics nomirror out scale 0.6 textcolor rgb '", ink, "'");
-  script("set grid back linewidth 0.6 linecolor rgb '", grid, "'");
+  script("set grid back linetype 1 dashtype solid linewidth 0.6 linecolor rgb '", grid, "'");
   script("set key noautotitle");
-  const double room = canvas.width - 2 * margin - reserved;
-  text(script, canvas, margin, 24, shortened(stamps.title, static_cast<std::size_t>(room / px_per_character)),
-       Align::left, 13, true);
-  text(script, canvas, margin, 46, stamps.subtitle, Align::left, 10, false, faint);
-  text(script, canvas, margin, canvas.height - 13, stamps.source, Align::left, 8, false, faint);
+  const auto fitted = [](const std::string& words, double room, double px) {
+    return shortened(words, static_cast<std::size_t>(std::max(1.0, room / px)));
+  };
+  const double room = canvas.width - 2 * margin;
+  text(script, canvas, margin, 24, fitted(stamps.title, room - reserved, px_bold), Align::left, 12, true);
+  text(script, canvas, margin, 46, fitted(stamps.subtitle, room - reserved, px_text), Align::left, 10, false, faint);
+  text(script, canvas, margin, canvas.height - 13, fitted(stamps.source, room, px_small), Align::left, 8, false, faint);
   script("set multiplot");
   return script;
 }
@@ -82,7 +94,11 @@ double nice_step(double range, int parts) {
 }
 
 void save(const Script& script, const Canvas& canvas, const std::filesystem::path& path) {
-  run_gnuplot(terminal(canvas, path) + script.text(), path);
+  const bool svg = path.extension() == ".svg";
+  if (!svg && path.extension() != ".png") throw IoError(path.string() + ": a figure ends in .svg or .png");
+  std::string picture = run_gnuplot(terminal(canvas, svg) + script.text()).picture;
+  if (svg) spell_bold_as_weight(picture);
+  write_file_atomically(path, picture);
 }
 
 }  // namespace talus::figures

@@ -49,7 +49,7 @@ void colour_bar(Script& script, const Canvas& canvas, const Panel& bar, std::str
 double nice_step(double range, int parts);
 
 /// Draws the figure to a file ending in .svg or .png; it appears by rename.
-/// @throws IoError, see run_gnuplot; also for another ending
+/// @throws IoError when gnuplot is missing or fails, the file cannot be written, or has another ending
 void save(const Script& script, const Canvas& canvas, const std::filesystem::path& path);
 
 /// A figure ready to be saved.

@@ -9,15 +9,12 @@
 #include <cstring>
 #include <memory>
 
-#include "io/files.hpp"
 #include "math/error.hpp"
 
 extern char** environ;
 
 namespace talus::figures {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct CloseFile {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -85,15 +82,14 @@ int spawn_gnuplot(int in, int out, int err) {
 
 }  // namespace
 
-std::string run_gnuplot(const std::string& script, const fs::path& output) {
+GnuplotOutput run_gnuplot(const std::string& script) {
   const File in = script_file(script);
   const File out = nameless_file();
   const File err = nameless_file();
   const int status = spawn_gnuplot(::fileno(in.get()), ::fileno(out.get()), ::fileno(err.get()));
-  const std::string messages = contents(err.get());
-  if (status != 0) throw IoError("gnuplot could not draw " + output.string() + ": " + messages);
-  write_file_atomically(output, contents(out.get()));
-  return messages;
+  GnuplotOutput output{contents(out.get()), contents(err.get())};
+  if (status != 0) throw IoError("gnuplot failed: " + output.warnings);
+  return output;
 }
 
 }  // namespace talus::figures

@@ -1,16 +1,18 @@
 #pragma once
 // Runs gnuplot: script on its stdin, picture on its stdout, no shell, no start-up file.
 
-#include <filesystem>
 #include <string>
 
 namespace talus::figures {
 
-/// Runs `gnuplot --default-settings` on `script` and puts what it writes to its stdout at `output`, which appears by
-/// rename.
-/// @return what gnuplot said on stderr (warnings)
-/// @throws IoError when gnuplot is missing ("install gnuplot-nox"), when it fails (with its message), or when `output`
-/// cannot be written
-std::string run_gnuplot(const std::string& script, const std::filesystem::path& output);
+/// What gnuplot made of a script.
+struct GnuplotOutput {
+  std::string picture;   ///< all it wrote to stdout
+  std::string warnings;  ///< all it wrote to stderr
+};
+
+/// Runs `gnuplot --default-settings` with `script` as its stdin.
+/// @throws IoError when gnuplot is missing ("install gnuplot-nox") or fails (with its message)
+GnuplotOutput run_gnuplot(const std::string& script);
 
 }  // namespace talus::figures

@@ -12,8 +12,9 @@
 namespace talus::figures {
 namespace {
 
-constexpr std::size_t many_particles = 3000;  // as many circles make an .svg of about 0.6 MB
-constexpr double disk_radius = 0.6;           // of dx: area 1.13 dx^2, so that a resting packing shows no holes
+constexpr std::size_t many_for_svg = 3000;  // as many circles make an .svg of about 0.9 MB
+constexpr std::size_t many_for_png = 200'000;
+constexpr double disk_radius = 0.6;  // of dx: area 1.13 dx^2, so that a resting packing shows no holes
 
 const Palette& palette_of(Colour colour) {
   switch (colour) {
@@ -84,7 +85,7 @@ SoilElement soil_disks(const Drawing& d, const Snapshot& shot, const std::string
 // A dashed line at the farthest particle, up to just above the soil there.
 std::string front_element(const Drawing& d, const Frame& frame, const std::string& tag) {
   const Vec2 front = frame.position[farthest(frame)];
-  const double reach = 40 / d.layout.metre;
+  const double reach = 52 / d.layout.metre;
   double top = front.y;
   for (std::size_t i = 0; i < frame.n_soil; ++i) {
     if (std::abs(frame.position[i].x - front.x) < reach) top = std::max(top, frame.position[i].y);
@@ -120,14 +121,14 @@ void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRan
   axes(d, panel);
   const std::string caption = shot.caption.empty() ? "t = " + fixed(shot.frame->time, 2) + " s" : shot.caption;
   text(d.script, d.layout.canvas, panel.left, panel.top - 12, caption, Align::left, 11, true);
-  const GroundElements ground = ground_elements(d.script, d.terrain, d.view, d.layout.metre, tag);
+  const GroundElements bed = ground_elements(d.script, d.terrain, d.view, d.layout.metre, tag);
   SoilElement soil;
   std::string front;
   if (shot.frame->n_soil > 0) {
     soil = d.raster ? soil_image(d, shot, range) : soil_disks(d, shot, tag);
     if (mark_front) front = front_element(d, *shot.frame, tag);
   }
-  d.script("plot ", ground.behind, soil.element, ground.front, front, "NaN").inline_binary(soil.bytes);
+  d.script("plot ", bed.behind, soil.element, bed.front, front, "NaN").inline_binary(soil.bytes);
   d.script("unset label");
   d.script("unset colorbox");
 }
@@ -170,20 +171,24 @@ double colour_value(const Frame& frame, std::size_t i, Colour colour) {
   return 0.0;
 }
 
-ColourRange colour_range(std::span<const Frame* const> frames, Colour colour) {
-  double lo = colour == Colour::friction_angle ? 90.0 : 0.0;
-  double hi = 0.0;
+ColourRange value_range(std::span<const Frame* const> frames, Colour colour) {
+  ColourRange range{colour == Colour::friction_angle ? 90.0 : 0.0, 0.0};
   for (const Frame* frame : frames) {
     for (std::size_t i = 0; i < frame->n_soil; ++i) {
       const double value = colour_value(*frame, i, colour);
-      lo = std::min(lo, value);
-      hi = std::max(hi, value);
+      range.lo = std::min(range.lo, value);
+      range.hi = std::max(range.hi, value);
     }
   }
-  if (lo > hi) return {0.0, 1.0};
-  if (hi - lo < 1e-6 * std::max(std::abs(hi), 1e-6)) return {lo - 1.0, hi + 1.0};
-  const double step = nice_step(hi - lo, 10);
-  return {step * std::floor(lo / step + 1e-9), step * std::ceil(hi / step - 1e-9)};
+  return range.lo <= range.hi ? range : ColourRange{0.0, 0.0};
+}
+
+ColourRange rounded(ColourRange range) {
+  const double span = range.hi - range.lo;
+  if (range.lo == 0.0 && range.hi < 1e-9) return {0.0, 1.0};
+  if (span < 1e-6 * std::abs(range.hi)) return {range.lo - 1.0, range.hi + 1.0};
+  const double step = nice_step(span, 10);
+  return {step * std::floor(range.lo / step + 1e-9), step * std::ceil(range.hi / step - 1e-9)};
 }
 
 Box view_of(std::span<const Frame* const> frames, const Terrain& terrain, double dx) {
@@ -203,7 +208,7 @@ Box view_of(std::span<const Frame* const> frames, const Terrain& terrain, double
   }
   const double margin = 0.03 * box.width() + dx;
   box.lo.x = std::min(box.lo.x, terrain.left_boundary) - margin;
-  box.hi.x += 2.5 * margin;
+  box.hi.x += 3 * margin;
   if (!terrain.closed && !terrain.bed.empty()) {
     // Soil that fell off an open end does not stretch the picture.
     box.hi.x = std::min(box.hi.x, terrain.bed.back().x + margin);
@@ -223,12 +228,12 @@ Sheet profile_sheet(std::span<const Snapshot> snapshots, const Terrain& terrain,
                                  [&](const Snapshot& s) { return s.colour != snapshots[0].colour; });
   const Box view = options.view.value_or(view_of(frames, terrain, dx));
   const Layout layout = profile_layout(snapshots.size(), view, mixed ? 44 : 30);
-  const double bar = 240;  // px
-  Sheet sheet{begin(layout.canvas, stamps, mixed ? 0 : bar + 150), layout.canvas};
+  const double bar = 220;  // px
+  Sheet sheet{begin(layout.canvas, stamps, mixed ? 0 : bar + 170), layout.canvas};
   const Drawing drawing{sheet.script, layout, terrain, dx, view, raster};
   for (std::size_t k = 0; k < snapshots.size(); ++k) {
     const Colour colour = snapshots[k].colour;
-    const ColourRange range = options.range.value_or(colour_range(frames_of(snapshots, colour), colour));
+    const ColourRange range = rounded(options.range.value_or(value_range(frames_of(snapshots, colour), colour)));
     const double right = mixed ? layout.panels[k].right : layout.canvas.width - 40;
     const double top = mixed ? layout.panels[k].top - 34 : 22;
     if (mixed || k == 0)
@@ -243,7 +248,7 @@ void plot_sequence(std::span<const Snapshot> snapshots, const Terrain& terrain, 
                    const std::filesystem::path& path, const Stamps& stamps, const ProfileOptions& options) {
   std::size_t particles = 0;
   for (const Snapshot& s : snapshots) particles += s.frame->n_soil;
-  const bool raster = path.extension() == ".svg" && particles > many_particles;
+  const bool raster = particles > (path.extension() == ".svg" ? many_for_svg : many_for_png);
   profile_sheet(snapshots, terrain, dx, stamps, options, raster).save(path);
 }
 

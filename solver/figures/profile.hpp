@@ -35,13 +35,15 @@ struct ColourRange {
   double hi;
 };
 
-/// Smallest round range that holds the soil of the frames; never empty.
-ColourRange colour_range(std::span<const Frame* const> frames, Colour colour);
+/// Smallest and largest value of the soil of the frames; 0 counts too, except for friction angles.
+ColourRange value_range(std::span<const Frame* const> frames, Colour colour);
+/// The same widened to round numbers; never empty.
+ColourRange rounded(ColourRange range);
 
 struct ProfileOptions {
-  bool mark_front = true;            ///< a dashed line and the distance from the left boundary at the farthest particle
-  std::optional<ColourRange> range;  ///< for all snapshots; unset: from the snapshots of the same colour
-  std::optional<Box> view;           ///< what is shown [m]; unset: the soil of all snapshots and some terrain ahead
+  bool mark_front = true;  ///< a dashed line and the distance from the left boundary at the farthest particle
+  std::optional<ColourRange> range{};  ///< for all snapshots; unset: from the snapshots of the same colour
+  std::optional<Box> view{};           ///< what is shown [m]; unset: the soil of all snapshots and some terrain ahead
 };
 
 /// The soil of all frames and some terrain ahead of it. [m]

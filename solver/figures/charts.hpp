@@ -1,0 +1,40 @@
+#pragma once
+// The charts of a study, each one sheet.
+
+#include <span>
+
+#include "figures/canvas.hpp"
+#include "figures/study_files.hpp"
+#include "particles/geometry_input.hpp"
+
+namespace talus::figures {
+
+/// Histogram of the influence zone; beneath it, on the same scale, the interval of the mean, the spread and the
+/// numerical noise floor.
+Sheet histogram_sheet(const StudyFiles& study);
+
+/// Probability that a run reaches farther than x, with Wilson's 95 % band.
+Sheet exceedance_sheet(const StudyFiles& study);
+
+/// Mean of the first n realizations done and its 95 % interval against n.
+Sheet running_mean_sheet(const StudyFiles& study);
+
+/// Probability that the front reaches x, above the terrain with the slide before its release.
+Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std::span<const SlidePart> slide);
+
+/// Influence zone against the spatial mean of the friction angle, one point a realization.
+Sheet friction_angle_sheet(const StudyFiles& study);
+
+/// Standard deviation of every measure beside its numerical noise floor.
+Sheet spread_sheet(const StudyFiles& study);
+
+/// "200 realizations" or "198 of 200 realizations done, 2 failed".
+std::string count_text(const StudyFiles& study);
+
+/// "34.12 [33.98, 34.26] m", as far as known.
+std::string interval_text(const std::optional<double>& value, const std::optional<Interval>& interval);
+
+/// Stamps of a chart: the study's title, `subtitle`, its source.
+Stamps chart_stamps(const StudyFiles& study, std::string subtitle);
+
+}  // namespace talus::figures

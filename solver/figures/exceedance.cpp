@@ -1,0 +1,51 @@
+#include <array>
+
+#include "figures/charts.hpp"
+
+namespace talus::figures {
+namespace {
+
+constexpr Canvas canvas{900, 576};
+constexpr Panel panel{84, 872, 84, 488};
+
+// A point of the curve that readers ask for.
+void mark(Script& script, const Quantity& q, double quantile, const char* name) {
+  const auto found = q.quantiles.find(quantile);
+  if (found == q.quantiles.end()) return;
+  const double x = found->second;
+  script("set label ", literal(std::string(name) + ": " + fixed(x, 2) + " m"), " at ", x, ",", 1.0 - quantile,
+         " left offset 1.2,0.5 front point pointtype 7 pointsize 0.6 linecolor rgb '", vermillion, "' textcolor rgb '",
+         ink, "'");
+}
+
+}  // namespace
+
+Sheet exceedance_sheet(const StudyFiles& study) {
+  const Quantity& q = study.quantities.at("influence_zone_m");
+  const std::string subtitle = std::string("Probability that the slide runs farther than x. Band: 95 % (Wilson)") +
+                               (study.failed > 0 ? ", from no failed run exceeding x to all of them" : "");
+  Sheet sheet{begin(canvas, chart_stamps(study, subtitle)), canvas};
+  Script& script = sheet.script;
+  std::vector<std::array<double, 4>> rows;
+  for (const Exceedance& e : q.exceedance) rows.push_back({e.x, e.p, e.lo, e.hi});
+  script.data("curve", rows);
+  const double lo = rows.empty() ? 0.0 : rows.front()[0];
+  const double hi = rows.empty() ? 1.0 : rows.back()[0];
+  const double spare = hi > lo ? 0.06 * (hi - lo) : 1.0;
+  script("set xrange [", lo - spare, ":", hi + 3 * spare, "]");
+  script("set yrange [0:1.02]");
+  script("set xtics ", nice_step(hi - lo + 4 * spare, 8));
+  script("set ytics 0.1");
+  script("set xlabel 'x (m), from the left boundary'");
+  script("set ylabel 'probability of exceedance'");
+  mark(script, q, 0.5, "half of the runs");
+  mark(script, q, 0.9, "1 in 10");
+  mark(script, q, 0.99, "1 in 100");
+  place(script, canvas, panel);
+  script("plot $curve using 1:3:4 with filledcurves fillcolor rgb '", blue,
+         "' fillstyle transparent solid 0.22 noborder, \\");
+  script("  $curve using 1:2 with lines linewidth 2 linecolor rgb '", blue, "'");
+  return sheet;
+}
+
+}  // namespace talus::figures

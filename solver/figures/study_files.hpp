@@ -1,0 +1,58 @@
+#pragma once
+// What figures need from a study's directory: study.json and realizations.csv.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "monte_carlo/histogram.hpp"
+#include "monte_carlo/statistics.hpp"
+
+namespace talus::figures {
+
+/// One measure of a study. [m]
+struct Quantity {
+  std::optional<double> mean;
+  std::optional<Interval> mean_ci95;
+  std::optional<double> stdev;
+  std::optional<Interval> stdev_ci95;
+  Histogram histogram;                 ///< no edges where nothing was done
+  std::vector<Exceedance> exceedance;  ///< in order of x
+  std::optional<double> noise_floor_stdev;
+  std::map<double, double> quantiles;  ///< value at probability
+};
+
+/// A realization that came to its end.
+struct Done {
+  std::int64_t index;
+  double influence_zone;  ///< [m]
+  double mean_phi_deg;    ///< [deg]
+};
+
+/// A study as its files tell it.
+struct StudyFiles {
+  std::string title;
+  std::string source;  ///< version, seed, case, for the source line
+  std::int64_t planned = 0;
+  std::int64_t done = 0;
+  std::int64_t failed = 0;
+  std::map<std::string, Quantity> quantities;  ///< by key: "influence_zone_m"
+  std::vector<Done> realizations;              ///< in order of index
+};
+
+/// Reads DIR/study.json and DIR/realizations.csv.
+/// @throws IoError naming the file and what it lacks
+StudyFiles read_study(const std::filesystem::path& directory);
+
+/// The document at `path`. @throws IoError
+nlohmann::json read_json(const std::filesystem::path& path);
+
+/// Rows of a CSV file as text by column name; fields may be quoted.
+/// @throws IoError naming file and line of a row whose fields do not match the header
+std::vector<std::map<std::string, std::string>> read_table(const std::filesystem::path& path);
+
+}  // namespace talus::figures
