@@ -11,12 +11,6 @@
 namespace talus {
 namespace {
 
-/// Three significant digits, for lengths and areas in messages.
-std::string rounded(double x) {
-  const double digit = std::pow(10.0, std::floor(std::log10(std::max(std::abs(x), 1e-300))) - 2.0);
-  return to_text(static_cast<double>(static_cast<float>(std::round(x / digit) * digit)));
-}
-
 void check_apart(const Model& model, const Origins& origins, Faults& faults) {
   for (std::size_t a = 0; a < model.slide.size(); ++a)
     for (std::size_t b = a + 1; b < model.slide.size(); ++b)

@@ -58,8 +58,20 @@ std::string to_text(double x) {
   return {buffer.data(), end};
 }
 
-std::string to_text(Vec2 p) { return std::string("(") + to_text(p.x) + ", " + to_text(p.y) + ")"; }
+std::string rounded(double x) {
+  std::array<char, 32> buffer{};
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), x, std::chars_format::general, 3).ptr;
+  return {buffer.data(), end};
+}
 
-std::string in_quotes(std::string_view word) { return std::string("\"") + shorten(word) + "\""; }
+std::string to_text(Vec2 p) {
+  std::string text = "(";
+  return text.append(to_text(p.x)).append(", ").append(to_text(p.y)).append(")");
+}
+
+std::string in_quotes(std::string_view word) {
+  std::string text = "\"";
+  return text.append(shorten(word)).append("\"");
+}
 
 }  // namespace talus

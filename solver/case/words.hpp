@@ -24,6 +24,8 @@ std::string shorten(std::string_view text, std::size_t most = 60);
 
 /// The shortest decimal that reads back as `x`: "0.1", "1e+09".
 std::string to_text(double x);
+/// Three significant digits: "0.333".
+std::string rounded(double x);
 /// "(3, 4.5)"
 std::string to_text(Vec2 p);
 /// The word shortened, between quotation marks.
