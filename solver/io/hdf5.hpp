@@ -50,7 +50,7 @@ class Id {
 /// has one; and a viewer may look at a file while it grows). HDF5 prints nothing.
 /// @{
 Id create_in_memory();
-/// @param name   for messages
+/// @param name  for messages; the name of a file or one that does not exist
 Id open_image(std::string_view image, const std::string& name);
 enum class Access { read, read_write };
 Id open_file(const std::filesystem::path& path, Access access);

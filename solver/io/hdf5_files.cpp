@@ -1,4 +1,5 @@
 #include <array>
+#include <atomic>
 
 #include "io/hdf5.hpp"
 #include "io/hdf5_detail.hpp"
@@ -39,6 +40,12 @@ Id in_memory_access_list() {
   return list;
 }
 
+/// HDF5 takes two files of one name for the same file, even in memory.
+std::string unique_name(const std::string& name) {
+  static std::atomic<unsigned> counter{0};
+  return name + "/image" + std::to_string(counter++);
+}
+
 }  // namespace
 
 void fail(const std::string& what) { throw IoError(what + reason()); }
@@ -66,14 +73,15 @@ Id create_in_memory() {
   const Id list = in_memory_access_list();
   const Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "cannot prepare a file in memory");
   H5Pset_obj_track_times(creation, false);
-  return Id(H5Fcreate("memory", H5F_ACC_TRUNC, creation, list), H5Fclose, "cannot create a file in memory");
+  return Id(H5Fcreate(unique_name("memory").c_str(), H5F_ACC_TRUNC, creation, list), H5Fclose,
+            "cannot create a file in memory");
 }
 
 Id open_image(std::string_view image, const std::string& name) {
   const Id list = in_memory_access_list();
   // HDF5 takes its own copy of the buffer, which it does not change.
   if (H5Pset_file_image(list, const_cast<char*>(image.data()), image.size()) < 0) fail("cannot read " + name);
-  return Id(H5Fopen(name.c_str(), H5F_ACC_RDONLY, list), H5Fclose, "cannot read " + name);
+  return Id(H5Fopen(unique_name(name).c_str(), H5F_ACC_RDONLY, list), H5Fclose, "cannot read " + name);
 }
 
 Id open_file(const std::filesystem::path& path, Access access) {

@@ -1,0 +1,262 @@
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "io/result_json.hpp"
+
+// libvalijson 1.0 leaves a parameter of its own unused.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+#pragma GCC diagnostic pop
+
+#include "faults.hpp"
+#include "io/files.hpp"
+#include "temporary_directory.hpp"
+
+namespace talus {
+namespace {
+
+using nlohmann::json;
+using nlohmann::ordered_json;
+using test::io_error;
+using test::TemporaryDirectory;
+
+constexpr std::size_t megabyte = 1 << 20;
+
+/// Another value for every member.
+RunResult sample_result() {
+  return {.measures = {.influence_zone = 34.1,
+                       .front_connected = 33.2,
+                       .front_mass_99 = 32.3,
+                       .front_mass_999 = 33.4,
+                       .centre_of_mass_x = -0.0},
+          .ending = Ending::at_rest,
+          .soil = 12700,
+          .wall = 4236,
+          .steps = 30000,
+          .time = 1.0 / 3.0,
+          .evaluations = 60000,
+          .wall_clock = 12.5,
+          .threads = 3,
+          .max_speed = 9.75,
+          .final_max_speed = 5e-324,
+          .penetrated = 1,
+          .left_domain = 2,
+          .at_rest = true,
+          .digest = "0123456789abcdef",
+          .field = {.captured_variance = 0.016, .mean_phi = 25.0 * std::numbers::pi / 180.0, .terms = 5}};
+}
+
+Provenance sample_provenance() {
+  return {.version = "0.1.0",
+          .seed = 9007199254740993u,
+          .realization = 7,
+          .perturbation = 1e-6,
+          .case_hash = "fedcba9876543210",
+          .case_title = "Geröll \"1\"",
+          .compiler = "GNU 12",
+          .started_utc = "2025-01-31T12:00:00Z"};
+}
+
+/// What the schema objects to, "" where it is content.
+std::string schema_faults(const json& document) {
+  const json schema_json = json::parse(read_file(TALUS_SOURCE_DIR "/schemas/result.schema.json", megabyte));
+  valijson::Schema schema;
+  valijson::SchemaParser parser;
+  valijson::adapters::NlohmannJsonAdapter schema_adapter(schema_json);
+  parser.populateSchema(schema_adapter, schema);
+  valijson::Validator validator(valijson::Validator::kStrongTypes);
+  valijson::ValidationResults results;
+  valijson::adapters::NlohmannJsonAdapter adapter(document);
+  std::string faults;
+  if (validator.validate(schema, adapter, &results)) return faults;
+  valijson::ValidationResults::Error error;
+  while (results.popError(error)) {
+    for (const std::string& part : error.context) faults += part;
+    faults += ": " + error.description + "\n";
+  }
+  return faults.empty() ? "not valid" : faults;
+}
+
+json document() { return json::parse(result_json(sample_result(), sample_provenance()).dump()); }
+
+TEST(ResultJson, HasTheKeysOfTheContract) {
+  const json d = document();
+  EXPECT_EQ(d["influence_zone_m"], 34.1);
+  EXPECT_EQ(d["front_connected_m"], 33.2);
+  EXPECT_EQ(d["front_mass_99_m"], 32.3);
+  EXPECT_EQ(d["front_mass_999_m"], 33.4);
+  EXPECT_EQ(d["centre_of_mass_x_m"], -0.0);
+  EXPECT_EQ(d["particles"], (json{{"soil", 12700}, {"wall", 4236}}));
+  EXPECT_EQ(d["steps"], 30000);
+  EXPECT_EQ(d["time_s"], 1.0 / 3.0);
+  EXPECT_EQ(d["evaluations"], 60000);
+  EXPECT_EQ(d["wall_clock_s"], 12.5);
+  EXPECT_EQ(d["threads"], 3);
+  EXPECT_EQ(d["max_speed_m_s"], 9.75);
+  EXPECT_EQ(d["final_max_speed_m_s"], 5e-324);
+  EXPECT_EQ(d["penetrated"], 1);
+  EXPECT_EQ(d["left_domain"], 2);
+  EXPECT_EQ(d["at_rest"], true);
+  EXPECT_EQ(d["ending"], "at_rest");
+  EXPECT_EQ(d["digest"], "0123456789abcdef");
+  EXPECT_EQ(d["field"]["captured_variance"], 0.016);
+  EXPECT_NEAR(d["field"]["mean_friction_angle_deg"], 25.0, 1e-13);
+  EXPECT_EQ(d["field"]["terms"], 5);
+  EXPECT_EQ(d["provenance"]["version"], "0.1.0");
+  EXPECT_EQ(d["provenance"]["seed"], 9007199254740993u);
+  EXPECT_EQ(d["provenance"]["realization"], 7);
+  EXPECT_EQ(d["provenance"]["perturbation"], 1e-6);
+  EXPECT_EQ(d["provenance"]["case_hash"], "fedcba9876543210");
+  EXPECT_EQ(d["provenance"]["case_title"], "Geröll \"1\"");
+  EXPECT_EQ(d["provenance"]["compiler"], "GNU 12");
+  EXPECT_EQ(d["provenance"]["started_utc"], "2025-01-31T12:00:00Z");
+  EXPECT_EQ(result_json(sample_result(), sample_provenance()).begin().key(), "influence_zone_m")
+      << "what matters most comes first";
+}
+
+TEST(ResultJson, ObeysItsSchema) {
+  EXPECT_EQ(schema_faults(document()), "");
+  Provenance deterministic = sample_provenance();
+  deterministic.realization.reset();
+  deterministic.perturbation.reset();
+  RunResult empty;
+  empty.digest = "ffffffffffffffff";
+  const ordered_json d = result_json(empty, deterministic);
+  EXPECT_TRUE(d["provenance"]["realization"].is_null());
+  EXPECT_EQ(schema_faults(json::parse(d.dump())), "");
+}
+
+TEST(ResultJson, ComesBack) {
+  const TemporaryDirectory dir;
+  write_file_atomically(dir / "result.json", document().dump());
+  const auto [result, provenance] = read_result(dir / "result.json");
+  // Written again it is the same text, but for the angle, which went from degrees to radians and back.
+  json again = json::parse(result_json(result, provenance).dump());
+  EXPECT_NEAR(again["field"]["mean_friction_angle_deg"], 25.0, 1e-13);
+  again["field"]["mean_friction_angle_deg"] = document()["field"]["mean_friction_angle_deg"];
+  EXPECT_EQ(again.dump(), document().dump());
+}
+
+TEST(ResultJson, KeepsTheLargestSeed) {
+  const TemporaryDirectory dir;
+  Provenance provenance = sample_provenance();
+  provenance.seed = 18446744073709551615u;
+  write_file_atomically(dir / "result.json", result_json(sample_result(), provenance).dump());
+  EXPECT_EQ(read_result(dir / "result.json").second.seed, provenance.seed);
+}
+
+TEST(ResultJson, OfEveryEndingComesBack) {
+  const TemporaryDirectory dir;
+  for (const Ending ending : {Ending::end_time, Ending::at_rest, Ending::interrupted}) {
+    RunResult result = sample_result();
+    result.ending = ending;
+    write_file_atomically(dir / "result.json", result_json(result, sample_provenance()).dump());
+    EXPECT_EQ(read_result(dir / "result.json").first.ending, ending);
+  }
+}
+
+TEST(ResultJson, RefusesNumbersThatJsonHasNoWordFor) {
+  RunResult result = sample_result();
+  result.measures.front_mass_99 = std::nan("");
+  EXPECT_THROW(result_json(result, sample_provenance()), std::domain_error);
+  result = sample_result();
+  result.field.mean_phi = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(result_json(result, sample_provenance()), std::domain_error);
+}
+
+/// Every leaf and object of the document by its JSON pointer.
+std::vector<std::string> pointers(const json& node, const std::string& pointer = "") {
+  std::vector<std::string> all;
+  for (const auto& [key, value] : node.items()) {
+    all.push_back(pointer + "/" + key);
+    if (value.is_object())
+      for (const std::string& below : pointers(value, all.back())) all.push_back(below);
+  }
+  return all;
+}
+
+/// The message about a document, which the schema must refuse as well.
+std::string refusal(const TemporaryDirectory& dir, const json& bad) {
+  EXPECT_NE(schema_faults(bad), "") << bad;
+  write_file_atomically(dir / "result.json", bad.dump());
+  return io_error([&] { read_result(dir / "result.json"); });
+}
+
+TEST(ResultJson, NamesAnyKeyThatIsMissing) {
+  const TemporaryDirectory dir;
+  for (const std::string& pointer : pointers(document())) {
+    const json::json_pointer place(pointer);
+    json bad = document();
+    bad[place.parent_pointer()].erase(place.back());
+    const std::string message = refusal(dir, bad);
+    EXPECT_NE(message.find("result.json: " + pointer + " is missing"), std::string::npos) << message;
+  }
+}
+
+TEST(ResultJson, NamesAnyKeyThatIsOfTheWrongKind) {
+  const TemporaryDirectory dir;
+  for (const std::string& pointer : pointers(document())) {
+    json bad = document();
+    bad[json::json_pointer(pointer)] = json::array();
+    EXPECT_NE(refusal(dir, bad).find("result.json: " + pointer + " "), std::string::npos);
+  }
+}
+
+TEST(ResultJson, NamesValuesOutOfRange) {
+  const TemporaryDirectory dir;
+  const std::pair<const char*, json> cases[] = {{"/steps", -1},
+                                                {"/steps", 1.5},
+                                                {"/threads", 0},
+                                                {"/time_s", -0.5},
+                                                {"/wall_clock_s", -1},
+                                                {"/particles/soil", -1},
+                                                {"/penetrated", -1},
+                                                {"/left_domain", -1},
+                                                {"/max_speed_m_s", -1.0},
+                                                {"/digest", "0123"},
+                                                {"/digest", "0123456789ABCDEF"},
+                                                {"/ending", "bored"},
+                                                {"/field/captured_variance", -0.1},
+                                                {"/provenance/seed", -1},
+                                                {"/at_rest", 1},
+                                                {"/provenance/realization", -1},
+                                                {"/provenance/realization", "7"},
+                                                {"/influence_zone_m", "34.1"},
+                                                {"/evaluations", nullptr}};
+  for (const auto& [pointer, value] : cases) {
+    json bad = document();
+    bad[json::json_pointer(pointer)] = value;
+    const std::string message = refusal(dir, bad);
+    EXPECT_NE(message.find(std::string("result.json: ") + pointer + " = " + value.dump()), std::string::npos)
+        << message;
+  }
+}
+
+TEST(ResultJson, RefusesIntegersThatDoNotFit) {
+  const TemporaryDirectory dir;
+  for (const char* pointer : {"/steps", "/threads"}) {
+    json large = document();
+    large[json::json_pointer(pointer)] = 18446744073709551615u;
+    write_file_atomically(dir / "result.json", large.dump());
+    EXPECT_NE(io_error([&] { read_result(dir / "result.json"); }).find(pointer), std::string::npos);
+  }
+}
+
+TEST(ResultJson, RefusesWhatIsNotJson) {
+  const TemporaryDirectory dir;
+  for (const char* text : {"", "{", "[]", "null", "{\"influence_zone_m\": 1e999}", "\xff"}) {
+    write_file_atomically(dir / "result.json", text);
+    EXPECT_NE(io_error([&] { read_result(dir / "result.json"); }).find("result.json"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,30 @@
+#pragma once
+// Small models for tests.
+
+#include <numbers>
+
+#include "simulation/model.hpp"
+
+namespace talus::testing_support {
+
+constexpr double degrees = std::numbers::pi / 180.0;
+
+/// A box of soil, width x height, between two walls, filled to the brim from a flat bed.
+inline Model column(double width, double height, double dx, double phi_deg = 25.0) {
+  Model m;
+  m.terrain = {{{0, 0}, {width, 0}}, false, true, true, 1.5 * height, 0.0};
+  m.slide = {{{{0, 0}, {width, 0}, {width, height}, {0, height}}, 0}};
+  m.materials = {{"soil", 2000, phi_deg * degrees, 0, 0}};
+  m.dx = dx;
+  m.time.end = 1.0;
+  return m;
+}
+
+/// A column that collapses to the right over a flat open bed.
+inline Model collapse(double dx) {
+  Model m = column(1.0, 0.8, dx);
+  m.terrain = {{{0, 0}, {5, 0}}, false, true, false, 1.2, 0.0};
+  return m;
+}
+
+}  // namespace talus::testing_support
