@@ -68,12 +68,12 @@ class Watch {
     count();
     levels_.push_back({array, 0, {}, {}});
     if (levels_.size() > limits_.nesting)
-      throw ConfigError("", "is nested deeper than " + std::to_string(limits_.nesting) + " levels");
+      throw ConfigError("", "the document is nested deeper than " + std::to_string(limits_.nesting) + " levels");
   }
   void count() {
     if (!levels_.empty() && levels_.back().array) ++levels_.back().elements;
     if (++values_ > limits_.values)
-      throw ConfigError("", "holds more than " + std::to_string(limits_.values) + " values");
+      throw ConfigError("", "the document holds more than " + std::to_string(limits_.values) + " values");
   }
   void check_length(std::size_t length) {
     if (length > limits_.string)

@@ -168,6 +168,7 @@ Terrain read_terrain(ObjectReader in, const std::filesystem::path& directory, co
   t.closed = in.flag("closed", t.closed);
   const bool sound =
       !bed.empty() && (t.closed ? check_ring(bed, in.faults()) : check_left_to_right(bed, false, in.faults()));
+  if (!sound) bed.points.clear();
   t.bed = bed.points;
   if (t.closed && signed_area(t.bed) < 0.0) std::reverse(t.bed.begin(), t.bed.end());
   in.record("bed_m", to_json(t.bed));

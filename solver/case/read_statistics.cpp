@@ -25,9 +25,9 @@ void read_correlation(ObjectReader& in, FieldSpec& spec) {
   const bool x_given = in.find("correlation_length_x_m") != nullptr,
              y_given = in.find("correlation_length_y_m") != nullptr;
   const bool both_given = in.find("correlation_length_m") != nullptr;
-  if (both_given && (x_given || y_given))
+  if (both_given && (x_given || y_given)) {
     in.fault("correlation_length_m", "is given beside correlation_length_x_m or correlation_length_y_m; give one form");
-  if (x_given || y_given) {
+  } else if (x_given || y_given) {
     spec.ell_x = in.number("correlation_length_x_m", length);
     spec.ell_y = in.number("correlation_length_y_m", length);
   } else {
@@ -42,14 +42,16 @@ void read_marginal(ObjectReader& in, FieldSpec& spec) {
   const auto mean = in.maybe_number("mean_tan_phi", {"", 0.0, 100.0, true});
   const bool log_form = in.find("log_stdev") != nullptr || in.find("log_mean") != nullptr;
   const bool tan_form = in.find("cov_tan_phi") != nullptr || in.find("mean_tan_phi") != nullptr;
-  if (log_form && tan_form) in.fault("", "mixes log_mean, log_stdev with mean_tan_phi, cov_tan_phi; give one pair");
-  if (!log_form && !tan_form) in.fault("log_stdev", "is missing (or cov_tan_phi): how much the friction angle varies");
-  if (tan_form) {
+  if (log_form && tan_form) {
+    in.fault("", "mixes log_mean, log_stdev with mean_tan_phi, cov_tan_phi; give one pair");
+  } else if (!log_form && !tan_form) {
+    in.fault("log_stdev", "is missing (or cov_tan_phi): how much the friction angle varies");
+  } else if (tan_form) {
     const double cov = in.number("cov_tan_phi", {"", 0.0, 10.0});
     const LogParameters log = log_parameters({mean.value_or(1.0), cov});
     spec.sigma = log.sigma;
     if (mean) spec.mu = log.mu;
-  } else if (log_form) {
+  } else {
     spec.sigma = in.number("log_stdev", {"", -5.0, 5.0});
     spec.mu = log_mean;
   }

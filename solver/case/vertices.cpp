@@ -87,10 +87,11 @@ std::optional<std::string> csv_text(const Json& value, const std::string& pointe
     faults.add(pointer, quote(value) + " is not the plain name of a CSV file beside the case");
     return {};
   }
+  const std::filesystem::path file = directory / *name;
   try {
-    return read_text(directory / *name);
+    return read_text(file);
   } catch (const IoError& e) {
-    faults.add(pointer, e.what());
+    faults.add(pointer, *name + std::string(e.what()).substr(file.string().size()));
   } catch (const ConfigError& e) {
     faults.add(pointer, e.what());
   }
