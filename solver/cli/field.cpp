@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -133,11 +134,12 @@ Exit field(const FieldOptions& options) {
   if (options.json) {
     std::cout << numbers.dump(2) << "\n";
   } else {
-    const ordered_json& phi = numbers["friction_angle_deg"];
     std::cout << options.out.string() << "\n";
-    std::cerr << numbers["particles"] << " particles, friction angle " << phi["min"] << " to " << phi["max"]
-              << " deg, mean " << phi["mean"] << "; " << numbers["terms"] << " terms, "
-              << 100.0 * soil_strength.summary.captured_variance << " % of the variance\n";
+    const ordered_json& phi = numbers["friction_angle_deg"];
+    std::fprintf(
+        stderr, "%zu particles, friction angle %.2f to %.2f deg, mean %.2f; %lld terms carry %.1f %% of the variance\n",
+        on_particles.position.size(), phi["min"].get<double>(), phi["max"].get<double>(), phi["mean"].get<double>(),
+        static_cast<long long>(soil_strength.summary.terms), 100.0 * soil_strength.summary.captured_variance);
   }
   return Exit::ok;
 }

@@ -57,8 +57,8 @@ Script begin(const Canvas& canvas, const Stamps& stamps, double reserved) {
     return shortened(words, static_cast<std::size_t>(std::max(1.0, room / px)));
   };
   const double room = canvas.width - 2 * margin;
-  text(script, canvas, margin, 24, fitted(stamps.title, room - reserved, px_bold), Align::left, 12, true);
-  text(script, canvas, margin, 46, fitted(stamps.subtitle, room - reserved, px_text), Align::left, 10, false, faint);
+  text(script, canvas, margin, 26, fitted(stamps.title, room - reserved, px_bold), Align::left, 12, true);
+  text(script, canvas, margin, 50, fitted(stamps.subtitle, room, px_text), Align::left, 10, false, faint);
   text(script, canvas, margin, canvas.height - 13, fitted(stamps.source, room, px_small), Align::left, 8, false, faint);
   script("set multiplot");
   return script;

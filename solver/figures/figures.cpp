@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <set>
 #include <span>
 #include <string>
@@ -20,6 +21,7 @@ namespace fs = std::filesystem;
 using namespace figures;
 
 constexpr std::size_t panels = 6;  // of a sequence, at most
+constexpr const char* speed_words = "Speed of the soil; front: farthest particle from the left boundary";
 
 // Draws into DIR/figures and remembers what.
 class Album {
@@ -68,11 +70,11 @@ void draw_motion(Album& album, const fs::path& file, const std::string& suffix, 
   const std::vector<Frame> frames = some_frames(file);
   std::vector<Snapshot> speed;
   for (const Frame& frame : frames) speed.push_back({&frame, Colour::speed, {}});
-  stamps.subtitle = whose + "speed of the soil; front: farthest particle from the left boundary";
+  stamps.subtitle = whose + speed_words;
   album.add("speed" + suffix, speed, model, stamps);
   std::vector<Snapshot> strength{{&frames.front(), Colour::friction_angle, {}}};
   if (frames.size() > 1) strength.push_back({&frames.back(), Colour::friction_angle, {}});
-  stamps.subtitle = whose + "friction angle of the soil, which it carries along";
+  stamps.subtitle = whose + "Friction angle of the soil, which it carries along";
   album.add("friction_angle" + suffix, strength, model, stamps);
 }
 
@@ -90,8 +92,17 @@ std::string run_source(const Provenance& from) {
   return line + "  ·  case " + from.case_hash;
 }
 
+// How far the soil came and how it presses, at the end.
+void draw_end(Album& album, const fs::path& file, const Model& model, Stamps stamps) {
+  const Frame frame = read_frame(file, snapshot_times(file).size() - 1);
+  stamps.subtitle = "At the last snapshot";
+  album.add("end", std::array{Snapshot{&frame, Colour::displacement, {}}, Snapshot{&frame, Colour::pressure, {}}},
+            model, stamps);
+}
+
 // Every snapshot in the same view and colours, one at a time in memory.
-void draw_snapshots(Album& album, const fs::path& file, const Model& model, const Stamps& stamps) {
+void draw_snapshots(Album& album, const fs::path& file, const Model& model, Stamps stamps) {
+  stamps.subtitle = speed_words;
   const std::size_t n = snapshot_times(file).size();
   ColourRange range{0.0, 0.0};
   Box view{{1e300, 1e300}, {-1e300, -1e300}};
@@ -105,10 +116,9 @@ void draw_snapshots(Album& album, const fs::path& file, const Model& model, cons
   }
   for (std::size_t k = 0; k < n; ++k) {
     const Frame frame = read_frame(file, k);
-    std::string name = std::to_string(k);
-    name.insert(0, 3 - std::min<std::size_t>(3, name.size()), '0');
-    album.add("snapshot_" + name, std::array{Snapshot{&frame, Colour::speed, {}}}, model, stamps,
-              {.range = range, .view = view});
+    char name[32];
+    std::snprintf(name, sizeof name, "snapshot_%03zu", k);
+    album.add(name, std::array{Snapshot{&frame, Colour::speed, {}}}, model, stamps, {.range = range, .view = view});
   }
 }
 
@@ -129,7 +139,7 @@ std::vector<fs::path> plot_study(const fs::path& directory) {
   for (const std::string which : {"first", "worst"}) {
     const fs::path file = directory / "profiles" / (which + ".vtkhdf");
     if (!fs::exists(file)) continue;
-    const std::string name = which == "first" ? "First run: " : "Run that went farthest: ";
+    const std::string name = which == "first" ? "First run. " : "The run that went farthest. ";
     draw_motion(album, file, "_" + which, model, {study.title, name, study.source});
   }
   return album.drawn();
@@ -142,6 +152,7 @@ std::vector<fs::path> plot_run(const fs::path& directory) {
   const Stamps stamps{from.case_title, {}, run_source(from)};
   Album album(directory);
   draw_motion(album, file, "", model, stamps);
+  draw_end(album, file, model, stamps);
   draw_snapshots(album, file, model, stamps);
   return album.drawn();
 }

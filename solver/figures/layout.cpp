@@ -6,7 +6,7 @@
 namespace talus::figures {
 namespace {
 
-constexpr double header = 62;        // px: title and subtitle
+constexpr double header = 68;        // px: title and subtitle
 constexpr double footer = 34;        // px: source line
 constexpr double left = 62;          // px: y tics and label of each panel
 constexpr double right = 24;         // px

@@ -12,9 +12,9 @@
 namespace talus::figures {
 namespace {
 
-constexpr std::size_t many_for_svg = 3000;  // as many circles make an .svg of about 0.9 MB
-constexpr std::size_t many_for_png = 200'000;
-constexpr double disk_radius = 0.6;  // of dx: area 1.13 dx^2, so that a resting packing shows no holes
+constexpr std::size_t many = 200'000;  // particles that are faster drawn as an image
+constexpr double disk_radius =
+    std::numbers::sqrt2 / 2;  // of dx: the circle around a particle's square, so that no holes show at rest
 
 const Palette& palette_of(Colour colour) {
   switch (colour) {
@@ -235,7 +235,7 @@ Sheet profile_sheet(std::span<const Snapshot> snapshots, const Terrain& terrain,
     const Colour colour = snapshots[k].colour;
     const ColourRange range = rounded(options.range.value_or(value_range(frames_of(snapshots, colour), colour)));
     const double right = mixed ? layout.panels[k].right : layout.canvas.width - 40;
-    const double top = mixed ? layout.panels[k].top - 34 : 22;
+    const double top = mixed ? layout.panels[k].top - 34 : 14;
     if (mixed || k == 0)
       colour_bar(sheet.script, layout.canvas, {right - bar, right, top, top + 10}, colour_name(colour));
     colour_axis(sheet.script, colour, range);
@@ -248,7 +248,7 @@ void plot_sequence(std::span<const Snapshot> snapshots, const Terrain& terrain, 
                    const std::filesystem::path& path, const Stamps& stamps, const ProfileOptions& options) {
   std::size_t particles = 0;
   for (const Snapshot& s : snapshots) particles += s.frame->n_soil;
-  const bool raster = particles > (path.extension() == ".svg" ? many_for_svg : many_for_png);
+  const bool raster = path.extension() == ".svg" || particles > many;
   profile_sheet(snapshots, terrain, dx, stamps, options, raster).save(path);
 }
 

@@ -50,13 +50,13 @@ struct ProfileOptions {
 Box view_of(std::span<const Frame* const> frames, const Terrain& terrain, double dx);
 
 /// The snapshots as panels of one figure with one scale and one colour scale a quantity.
-/// @param dx      particle spacing [m]; a particle is a disk of area dx^2
+/// @param dx      particle spacing [m]; a particle is a disk around its square of edge dx
 /// @param raster  draw the soil as an image instead of disks, for an .svg of many particles
 Sheet profile_sheet(std::span<const Snapshot> snapshots, const Terrain& terrain, double dx, const Stamps& stamps,
                     const ProfileOptions& options = {}, bool raster = false);
 
-/// The same, drawn to .svg or .png; an .svg of more than 3000 particles gets the soil as an embedded image, so that it
-/// stays small.
+/// The same, drawn to .svg or .png; an .svg gets the soil as an embedded image: as thousands of circles it would take
+/// megabytes.
 /// @throws IoError when gnuplot is missing or fails, or the file cannot be written
 void plot_sequence(std::span<const Snapshot> snapshots, const Terrain& terrain, double dx,
                    const std::filesystem::path& path, const Stamps& stamps, const ProfileOptions& options = {});
