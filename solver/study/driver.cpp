@@ -208,7 +208,7 @@ void Driver::ended(Worker& worker, ProcessEnd end) {
       return failed(worker, end, how + ", " + std::to_string(worker.task.attempts) + " times" + said);
     note(job_name(job) + " was " + how + "; trying once more");
     queue_.push_front(worker.task);
-  } else if (code == Exit::io && worker.resumed && worker.task.attempts < most_attempts) {
+  } else if (code == Exit::io && worker.resumed) {
     note(job_name(job) + " cannot go on from its checkpoint" + said + "; starting it again");
     fs::remove_all(paths_.work(job));
     queue_.push_front(worker.task);

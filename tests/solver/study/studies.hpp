@@ -1,0 +1,60 @@
+#pragma once
+// Small studies for tests.
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "study/plan.hpp"
+#include "study/record.hpp"
+
+namespace talus::fixtures {
+
+/// A directory of a test's own, removed with the object.
+struct TemporaryDirectory {
+  std::filesystem::path path;
+  TemporaryDirectory() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "talus-study-XXXXXX").string();
+    path = ::mkdtemp(pattern.data());
+  }
+  ~TemporaryDirectory() { std::filesystem::remove_all(path); }
+  TemporaryDirectory(const TemporaryDirectory&) = delete;
+  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
+};
+
+inline std::string content(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+inline void write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+inline Plan plan(std::int64_t realizations) {
+  Plan p{.title = "A slope", .case_hash = "0123456789abcdef", .version = "0.1.0", .seed = 42, .study = {}};
+  p.study.realizations = realizations;
+  p.study.noise_floor_replicates = 0;
+  return p;
+}
+
+/// A realization whose measures all differ.
+inline Record done(std::int64_t index, double zone) {
+  return {.index = index,
+          .done = true,
+          .measures = {zone, zone - 0.3, zone - 0.7, zone - 0.4, 0.5 * zone},
+          .mean_phi_deg = 25.0 - 0.1 * static_cast<double>(index % 7),
+          .captured_variance = 0.25,
+          .steps = 1000 + index,
+          .wall_clock = 1.5,
+          .digest = "00000000000000" + std::to_string(10 + index % 90)};
+}
+
+inline Record failed(std::int64_t index, const std::string& reason) { return {.index = index, .reason = reason}; }
+
+}  // namespace talus::fixtures

@@ -1,0 +1,81 @@
+#include "math/error.hpp"
+#include "studies.hpp"
+#include "study/csv.hpp"
+
+using namespace talus;
+using namespace talus::fixtures;
+
+namespace {
+
+/// The message with which reading `text` is refused.
+std::string refusal(const std::string& text) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path / "t.csv";
+  write(path, text);
+  try {
+    read_csv(path, "index");
+  } catch (const IoError& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+const std::string head =
+    "index,status,influence_zone_m,front_connected_m,front_mass_99_m,front_mass_999_m,centre_of_mass_x_m,mean_friction_"
+    "angle_deg,captured_variance,"
+    "steps,wall_clock_s,digest,reason\n";
+
+}  // namespace
+
+TEST(Csv, OneLineForEachRecord) {
+  Record r = done(3, 34.5);
+  r.measures.centre_of_mass_x = 0.1 + 0.2;  // 17 digits
+  EXPECT_EQ(to_csv({r, failed(7, "diverged: at step 12, \"fast\"\nreally")}, "index"),
+            head +
+                "3,done,34.5,34.2,33.8,34.1,0.30000000000000004,24.7,0.25,1003,1.5,0000000000000013,\n"
+                "7,failed,,,,,,,,,,,\"diverged: at step 12, \"\"fast\"\" really\"\n");
+}
+
+TEST(Csv, ReadsBackExactly) {
+  const TemporaryDirectory directory;
+  const auto path = directory.path / "t.csv";
+  Record r = done(3, 100.0 / 3.0);
+  r.wall_clock = 1e-300;
+  write(path, to_csv({r, failed(7, "a, \"b\"; c"), done(1000000, -0.125)}, "replicate"));
+  const std::vector<Record> back = read_csv(path, "replicate");
+  ASSERT_EQ(back.size(), 3u);
+  EXPECT_TRUE(back[0].done);
+  EXPECT_EQ(back[0].measures.influence_zone, 100.0 / 3.0);
+  EXPECT_EQ(back[0].measures.front_mass_999, 100.0 / 3.0 - 0.4);
+  EXPECT_EQ(back[0].mean_phi_deg, r.mean_phi_deg);
+  EXPECT_EQ(back[0].captured_variance, 0.25);
+  EXPECT_EQ(back[0].steps, 1003);
+  EXPECT_EQ(back[0].wall_clock, 1e-300);
+  EXPECT_EQ(back[0].digest, r.digest);
+  EXPECT_FALSE(back[1].done);
+  EXPECT_EQ(back[1].index, 7);
+  EXPECT_EQ(back[1].reason, "a, \"b\"; c");
+  EXPECT_EQ(back[2].index, 1000000);
+  EXPECT_EQ(to_csv(back, "replicate"), content(path));
+}
+
+TEST(Csv, AcceptsLineEndsOfOtherSystems) {
+  const TemporaryDirectory directory;
+  write(directory.path / "t.csv", "index" + head.substr(5, head.size() - 6) + "\r\n3,failed,,,,,,,,,,,\"x\"\r\n");
+  EXPECT_EQ(read_csv(directory.path / "t.csv", "index").front().reason, "x");
+}
+
+TEST(Csv, NamesFileLineAndFault) {
+  const std::string good = to_csv({done(3, 34.5)}, "index");
+  EXPECT_NE(refusal("").find("t.csv is empty"), std::string::npos);
+  EXPECT_NE(refusal("a,b\n").find("t.csv:1 is not the header"), std::string::npos);
+  EXPECT_NE(refusal(good + "4,done,1\n").find("t.csv:3 has 3 fields instead of 13"), std::string::npos);
+  EXPECT_NE(refusal(good + "3,failed,,,,,,,,,,,x\n").find("t.csv:3 has the index 3 out of order, or twice"),
+            std::string::npos);
+  EXPECT_NE(refusal(head + "3,lost,,,,,,,,,,,x\n").find("t.csv:2 has the status \"lost\""), std::string::npos);
+  EXPECT_NE(refusal(head + "3,done,far,1,1,1,1,1,1,1,1,d,\n").find("t.csv:2 field 3: \"far\" is not a number"),
+            std::string::npos);
+  EXPECT_NE(refusal(head + "3,done,nan,1,1,1,1,1,1,1,1,d,\n").find("\"nan\" is not a number"), std::string::npos);
+  EXPECT_NE(refusal(head + "3,failed,,,,,,,,,,,\"x\n").find("t.csv:2 has 0 fields"),
+            std::string::npos);  // an open quote
+}

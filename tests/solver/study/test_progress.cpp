@@ -1,0 +1,54 @@
+#include "studies.hpp"
+#include "study/progress.hpp"
+#include "study/summary.hpp"
+
+using namespace talus;
+using namespace talus::fixtures;
+
+namespace {
+
+const Progress half{.planned = 8,
+                    .done = 3,
+                    .failed = 1,
+                    .floor_planned = 2,
+                    .floor_made = 2,
+                    .made_now = 6,
+                    .running = 2,
+                    .elapsed = 60.0,
+                    .mean = 34.125,
+                    .mean_half_width = 0.5};
+
+}  // namespace
+
+TEST(Progress, SaysWhereTheStudyStands) {
+  EXPECT_EQ(progress_line({.planned = 8}), "0/8 done, 0 failed, 0 running");
+  // 6 runs in 60 s: 360 an hour; 4 are left: 40 s.
+  EXPECT_EQ(progress_line(half), "3/8 done, 1 failed, 2 running, 360/h, 40 s left, mean 34.12 +/- 0.50 m");
+  EXPECT_FALSE(time_left({.planned = 8}));
+  EXPECT_DOUBLE_EQ(*time_left(half), (8 - 3 - 1 + 2 - 2) * 60.0 / 6.0);
+}
+
+TEST(Progress, TheBarFillsAndFits) {
+  EXPECT_EQ(progress_bar(half, 200).substr(0, 36), "[###############...............] 3/8");
+  EXPECT_EQ(progress_bar({.planned = 4, .done = 4}, 32), "[########] 4/4 done, 0 failed, 0");
+  EXPECT_EQ(progress_bar({}, 40).size(), 40u);
+}
+
+TEST(Progress, SummaryNamesTheNumbers) {
+  Plan p = plan(4);
+  const std::string text = summary_table(summarize(p, {done(0, 34.0), done(1, 36.0), failed(2, "x")}, {}));
+  EXPECT_NE(text.find("4 realizations planned, 2 done, 1 failed; not complete"), std::string::npos) << text;
+  EXPECT_NE(text.find("influence_zone_m        35.000  [22.294, 47.706]"), std::string::npos) << text;
+  EXPECT_NE(summary_table(summarize(p, {}, {})).find("0 done"), std::string::npos);
+}
+
+TEST(Progress, HistogramInText) {
+  Plan p = plan(4);
+  p.study.histogram_edges = {33.0, 34.0, 35.0};
+  const auto study = summarize(p, {done(0, 33.5), done(1, 34.5), done(2, 34.7), done(3, 99.0)}, {});
+  EXPECT_EQ(text_histogram(study["quantities"]["influence_zone_m"], 42),
+            "[       33,        34)      1 #####\n"
+            "[       34,        35]      2 ##########\n"
+            "above the last edge: 1\n");
+  EXPECT_EQ(text_histogram(summarize(plan(4), {}, {})["quantities"]["influence_zone_m"], 42), "");
+}

@@ -1,0 +1,153 @@
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+#include "monte_carlo/histogram.hpp"
+#include "studies.hpp"
+#include "study/summary.hpp"
+
+using namespace talus;
+using namespace talus::fixtures;
+
+namespace {
+
+/// What schemas/study.schema.json has against `study`.
+std::string against_schema(const nlohmann::ordered_json& study) {
+  using Adapter = valijson::adapters::NlohmannJsonAdapter;
+  const nlohmann::json text = nlohmann::json::parse(content(TALUS_SOURCE_DIR "/schemas/study.schema.json"));
+  const nlohmann::json document = nlohmann::json::parse(study.dump());
+  valijson::Schema schema;
+  valijson::SchemaParser().populateSchema(Adapter(text), schema);
+  valijson::ValidationResults results;
+  valijson::Validator().validate(schema, Adapter(document), &results);
+  std::string faults;
+  for (const auto& fault : results) {
+    for (const std::string& part : fault.context) faults += part;
+    faults += ": " + fault.description + "\n";
+  }
+  return faults;
+}
+
+std::vector<Record> some_runs() {
+  return {done(0, 34.0), done(1, 35.5), failed(2, "diverged"), done(3, 33.0), done(4, 36.25), done(6, 34.5)};
+}
+
+std::vector<Record> some_floor() { return {done(1, 34.01), done(2, 33.98), failed(3, "killed"), done(4, 34.02)}; }
+
+}  // namespace
+
+TEST(Summary, FollowsItsSchema) {
+  Plan p = plan(8);
+  p.study.noise_floor_replicates = 4;
+  EXPECT_EQ(against_schema(summarize(p, some_runs(), some_floor())), "");
+  EXPECT_EQ(against_schema(summarize(p, {}, {})), "");
+  EXPECT_EQ(against_schema(summarize(p, {failed(0, "x")}, {})), "");
+  EXPECT_EQ(against_schema(summarize(p, {done(0, 34.0)}, {})), "");
+  EXPECT_EQ(against_schema(summarize(p, {done(0, 34.0), done(1, 34.0)}, {done(1, 34.0)})), "");
+  p.study.stop_half_width = 0.5;
+  p.study.histogram_edges = {30.0, 35.0, 40.0};
+  p.study.sampling = Sampling::latin_hypercube;
+  EXPECT_EQ(against_schema(summarize(p, some_runs(), some_floor())), "");
+  nlohmann::ordered_json bad = summarize(p, some_runs(), some_floor());
+  bad["quantities"]["influence_zone_m"].erase("stdev_ci95");
+  EXPECT_NE(against_schema(bad), "");
+}
+
+TEST(Summary, CountsWhatWasPlannedMadeAndMissed) {
+  const auto n = summarize(plan(9), some_runs(), {})["realizations"];
+  EXPECT_EQ(n["planned"], 9);
+  EXPECT_EQ(n["done"], 5);
+  EXPECT_EQ(n["failed"], 1);
+  EXPECT_EQ(n["complete"], false);
+  EXPECT_EQ(n["missing"].dump(), "[[5,5],[7,8]]");
+  const auto all = summarize(plan(2), {done(0, 1.0), failed(1, "x")}, {})["realizations"];
+  EXPECT_EQ(all["complete"], true);
+  EXPECT_EQ(all["missing"].dump(), "[]");
+}
+
+TEST(Summary, StatisticsOfEachMeasureAreThoseOfItsColumn) {
+  const auto study = summarize(plan(8), some_runs(), {});
+  for (const MeasureColumn& column : measure_columns) {
+    std::vector<double> sample;
+    for (const Record& r : some_runs())
+      if (r.done) sample.push_back(r.measures.*column.member);
+    const SampleMoments m = moments(sample);
+    const auto q = study["quantities"][column.key];
+    EXPECT_EQ(q["n"], 5);
+    EXPECT_EQ(q["mean"], *m.mean) << column.key;
+    EXPECT_EQ(q["mean_ci95"][1], *m.mean_ci95->hi);
+    EXPECT_EQ(q["stdev"], *m.stdev) << column.key;
+    EXPECT_EQ(q["stdev_ci95"][0], *m.stdev_ci95->lo);
+  }
+}
+
+TEST(Summary, FailuresStayInTheDenominatorOfEveryExceedance) {
+  const auto curve = summarize(plan(8), some_runs(), {})["quantities"]["influence_zone_m"]["exceedance"];
+  ASSERT_FALSE(curve.empty());
+  for (const auto& e : curve) {
+    EXPECT_EQ(e["n"], 6);
+    EXPECT_DOUBLE_EQ(e["p"], e["k"].get<double>() / 6.0);
+    EXPECT_EQ(e["p_if_failed_none_exceed"], e["p"]);
+    EXPECT_DOUBLE_EQ(e["p_if_failed_all_exceed"], (e["k"].get<double>() + 1.0) / 6.0);
+  }
+  EXPECT_EQ(curve.back()["k"], 0);
+  EXPECT_LE(curve.front()["x"], 33.0);
+}
+
+TEST(Summary, NoiseFloorIncludesTheRealizationItReplicates) {
+  const auto study = summarize(plan(8), some_runs(), some_floor());
+  const auto q = study["quantities"]["influence_zone_m"];
+  const SampleMoments noise =
+      moments(std::vector{34.0, 34.01, 33.98, 34.02});  // realization 0 first, the failed one left out
+  EXPECT_EQ(q["noise_floor_stdev"], *noise.stdev);
+  EXPECT_EQ(q["noise_floor_stdev_ci95"][0], *noise.stdev_ci95->lo);
+  EXPECT_DOUBLE_EQ(q["stdev_over_noise_floor"], q["stdev"].get<double>() / *noise.stdev);
+  EXPECT_EQ(study["noise_floor"]["replicates_done"], 3);
+  EXPECT_EQ(study["noise_floor"]["replicates_failed"], 1);
+  EXPECT_TRUE(summarize(plan(8), some_runs(), {})["quantities"]["influence_zone_m"]["noise_floor_stdev"].is_null());
+}
+
+TEST(Summary, GivenEdgesAreUsedForFrontsOnly) {
+  Plan p = plan(8);
+  p.study.histogram_edges = {33.5, 34.5, 36.0};
+  const auto q = summarize(p, some_runs(), {})["quantities"];
+  const auto h = q["influence_zone_m"]["histogram"];
+  EXPECT_EQ(h["edges"].dump(), "[33.5,34.5,36.0]");
+  EXPECT_EQ(h["counts"].dump(), "[1,2]");  // 34.0 | 34.5, 35.5
+  EXPECT_EQ(h["underflow"], 1);
+  EXPECT_EQ(h["overflow"], 1);
+  EXPECT_EQ(h["convention"], histogram_convention);
+  EXPECT_EQ(h["edges_given"], true);
+  EXPECT_EQ(q["centre_of_mass_x_m"]["histogram"]["edges_given"], false);
+  EXPECT_EQ(q["centre_of_mass_x_m"]["histogram"]["underflow"], 0);
+}
+
+TEST(Summary, NamesFailuresExtremesAndFriction) {
+  const auto study = summarize(plan(8), some_runs(), {});
+  EXPECT_EQ(study["failures"].dump(), R"([{"index":2,"reason":"diverged"}])");
+  EXPECT_EQ(study["extremes"]["farthest_realization"], 4);
+  EXPECT_EQ(study["extremes"]["shortest_realization"], 3);
+  EXPECT_DOUBLE_EQ(study["mean_friction_angle_deg"]["mean"], 25.0 - 0.1 * (0 + 1 + 3 + 4 + 6) / 5.0);
+  EXPECT_EQ(study["captured_variance"], 0.25);
+  EXPECT_EQ(study["effort"]["steps"], 5 * 1000 + 0 + 1 + 3 + 4 + 6);
+}
+
+TEST(Summary, SaysWhatALatinHypercubeMeansForIntervals) {
+  Plan p = plan(8);
+  EXPECT_FALSE(summarize(p, some_runs(), {})["notes"].contains("sampling"));
+  p.study.sampling = Sampling::latin_hypercube;
+  const auto study = summarize(p, some_runs(), {});
+  EXPECT_NE(study["notes"]["sampling"].get<std::string>().find("conservative"), std::string::npos);
+  EXPECT_EQ(study["provenance"]["sampling"], "latin_hypercube");
+}
+
+TEST(Summary, TooManyFailedIsAShareOfThoseMade) {
+  Plan p = plan(1000);
+  p.study.max_failed_share = 0.25;
+  std::vector<Record> runs{failed(0, "x"), done(1, 1.0), done(2, 1.0), done(3, 1.0)};
+  EXPECT_FALSE(too_many_failed(p, runs));
+  runs.pop_back();
+  EXPECT_TRUE(too_many_failed(p, runs));
+  EXPECT_FALSE(too_many_failed(p, {}));
+}
