@@ -1,0 +1,61 @@
+// The same bits for any number of threads and across a checkpoint.
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "math/error.hpp"
+#include "models.hpp"
+#include "simulation/observables.hpp"
+#include "simulation/simulation.hpp"
+
+namespace talus {
+namespace {
+
+using namespace testing_support;
+
+std::string digest_after(const Model& m, int steps, int threads) {
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(threads);
+  Simulation simulation(m, plan_particles(m));
+  for (int k = 0; k < steps; ++k) simulation.step(m.time.end);
+  omp_set_num_threads(before);
+  return digest(simulation.soil());
+}
+
+TEST(Determinism, OneTwoAndThreeThreadsGiveTheSameBits) {
+  for (const auto filter : {DensityFilter::delta_sph, DensityFilter::shepard}) {
+    Model m = collapse(0.05);
+    m.numerics.density_filter = filter, m.numerics.filter_interval = 7;
+    const std::string one = digest_after(m, 60, 1);
+    EXPECT_EQ(digest_after(m, 60, 2), one);
+    EXPECT_EQ(digest_after(m, 60, 3), one);
+  }
+}
+
+TEST(Determinism, ARestoredRunGoesOnWithTheSameBits) {
+  for (const auto integrator : {Integrator::rk2, Integrator::leapfrog})
+    for (const auto filter : {DensityFilter::delta_sph, DensityFilter::shepard}) {
+      Model m = collapse(0.05);
+      m.numerics.integrator = integrator, m.numerics.density_filter = filter, m.numerics.filter_interval = 9;
+      m.time.end = 0.4;
+      Simulation whole(m, plan_particles(m));
+      while (!whole.finished()) whole.step(m.time.end);
+      Simulation first(m, plan_particles(m));
+      for (int k = 0; k < 83; ++k) first.step(m.time.end);
+      Simulation second(m, plan_particles(m));
+      second.restore(first.state());
+      while (!second.finished()) second.step(m.time.end);
+      EXPECT_EQ(second.result().digest, whole.result().digest);
+      EXPECT_EQ(second.steps(), whole.steps());
+      EXPECT_EQ(second.result().evaluations, whole.result().evaluations);
+      EXPECT_EQ(second.result().max_speed, whole.result().max_speed);
+    }
+}
+
+TEST(Determinism, AStateOfAnotherModelIsRefused) {
+  Simulation coarse(collapse(0.1), plan_particles(collapse(0.1))), fine(collapse(0.05), plan_particles(collapse(0.05)));
+  EXPECT_THROW(fine.restore(coarse.state()), IoError);
+}
+
+}  // namespace
+}  // namespace talus

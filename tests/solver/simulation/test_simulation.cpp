@@ -1,0 +1,187 @@
+#include "simulation/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "math/error.hpp"
+#include "models.hpp"
+#include "simulation/observables.hpp"
+
+namespace talus {
+namespace {
+
+using namespace testing_support;
+
+void run(Simulation& simulation, double end) {
+  while (!simulation.finished()) simulation.step(end);
+}
+
+TEST(Simulation, CollapseSpreadsStopsAndKeepsItsMass) {
+  Model m = collapse(0.05);
+  m.time.end = 2.0;
+  Simulation simulation(m, plan_particles(m));
+  run(simulation, m.time.end);
+  const RunResult r = simulation.result();
+  EXPECT_GT(r.measures.influence_zone, 1.6);
+  EXPECT_LT(r.measures.influence_zone, 3.5);
+  EXPECT_TRUE(r.at_rest);
+  EXPECT_EQ(r.penetrated, 0);
+  EXPECT_EQ(r.left_domain, 0);
+  EXPECT_EQ(r.evaluations, 2 * r.steps);
+  double mass = 0;
+  for (const double x : simulation.soil().m) mass += x;
+  EXPECT_NEAR(mass, 2000 * 1.0 * 0.8, 1e-9);
+}
+
+TEST(Simulation, PaperNormStopsShorter) {  // its soil is sqrt(3) times stronger
+  Model m = collapse(0.05);
+  m.time.end = 1.5;
+  m.rheology.yield = Yield::regularized;
+  Simulation consistent(m, plan_particles(m));
+  run(consistent, m.time.end);
+  m.rheology.shear_rate = ShearRate::paper;
+  Simulation paper(m, plan_particles(m));
+  run(paper, m.time.end);
+  EXPECT_LT(farthest(paper.soil()), farthest(consistent.soil()) - 0.1);
+}
+
+TEST(Simulation, WeakerParticlesRunFarther) {
+  Model m = collapse(0.05);
+  const ParticlePlan plan = plan_particles(m);
+  Simulation strong(m, plan, std::vector<double>(plan.soil.size(), 0.7)), weak(m, plan, std::vector<double>(plan.soil.size(), 0.2));
+  run(strong, m.time.end), run(weak, m.time.end);
+  EXPECT_GT(farthest(weak.soil()), farthest(strong.soil()) + 0.2);
+}
+
+TEST(Simulation, SnapshotTimesNeverShortenAStepAndTheEndIsMetExactly) {
+  Model m = collapse(0.1);
+  m.time.fixed_step = 3e-4, m.time.end = 0.03;
+  Simulation simulation(m, plan_particles(m));
+  run(simulation, m.time.end);
+  EXPECT_EQ(simulation.steps(), 100);
+  EXPECT_EQ(simulation.time(), 0.03);
+}
+
+TEST(Simulation, MaxStepBoundsTheCourantStep) {
+  Model m = collapse(0.1);
+  EXPECT_GT(first_step(m), 1e-4);
+  m.time.max_step = 1e-4;
+  EXPECT_EQ(first_step(m), 1e-4);
+  Simulation simulation(m, plan_particles(m));
+  simulation.step(m.time.end);
+  EXPECT_EQ(simulation.time(), 1e-4);
+}
+
+TEST(Simulation, DivergenceNamesStepTimeAndParticle) {
+  Model m = collapse(0.1);
+  m.time.fixed_step = 0.05, m.time.end = 100.0;  // a hundred times too large
+  Simulation simulation(m, plan_particles(m));
+  try {
+    run(simulation, m.time.end);
+    FAIL() << "it should have diverged";
+  } catch (const DivergedError& e) {
+    EXPECT_EQ(e.step, simulation.steps());
+    EXPECT_GT(e.time, 0.0);
+    EXPECT_GE(e.particle, 0);
+    EXPECT_NE(std::string(e.what()).find("particle " + std::to_string(e.particle)), std::string::npos);
+  }
+}
+
+TEST(Simulation, SoilThatLeavesThroughAnOpenEndIsCountedAndKept) {
+  Model m = collapse(0.05);
+  m.terrain.bed = {{0, 0}, {1.2, 0}};
+  m.materials[0].phi = 5 * degrees;
+  m.time.end = 1.0;
+  Simulation simulation(m, plan_particles(m));
+  run(simulation, m.time.end);
+  const RunResult r = simulation.result();
+  EXPECT_GT(r.left_domain, 10);
+  EXPECT_EQ(r.soil, static_cast<std::int64_t>(simulation.soil().size()));
+  EXPECT_GE(r.measures.influence_zone, 1.2);
+  EXPECT_LT(r.measures.influence_zone, 1.3);
+}
+
+TEST(Simulation, ABlockOnASmootherWallSlidesAtTheWallsFriction) {
+  // theta = 30 deg; soil 45 deg would hold, a wall of 15 deg lets the block slide at g (sin - cos tan 15).
+  const auto speed_after = [](WallSlip slip, double phi_wall_deg) {
+    Model m;
+    m.terrain = {{{-1, 0}, {12, 0}}, false, false, false, 0, 0};
+    m.slide = {{{{0, 0}, {3, 0}, {3, 0.5}, {0, 0.5}}, 0}};
+    m.materials = {{"soil", 2000, 45 * degrees, 3000, 0}};
+    m.g = {9.81 * std::sin(30 * degrees), -9.81 * std::cos(30 * degrees)};
+    m.dx = 0.1;
+    m.walls.slip = slip, m.walls.phi = phi_wall_deg * degrees;
+    m.time.end = 0.8;
+    m.numerics.initial_pressure = InitialPressure::hydrostatic;
+    if (slip == WallSlip::friction) m.materials[0].c = 0;
+    Simulation simulation(m, plan_particles(m));
+    run(simulation, m.time.end);
+    return linear_momentum(simulation.soil()).x / (2000 * 3 * 0.5);
+  };
+  const double free_fall = 9.81 * std::sin(30 * degrees) * 0.8;
+  EXPECT_NEAR(speed_after(WallSlip::free_slip, 0), free_fall, 0.01 * free_fall);
+  const double expected = 9.81 * (std::sin(30 * degrees) - std::cos(30 * degrees) * std::tan(15 * degrees)) * 0.8;
+  EXPECT_NEAR(speed_after(WallSlip::friction, 15), expected, 0.1 * expected);
+  EXPECT_LT(speed_after(WallSlip::no_slip, 0), 0.05);
+}
+
+TEST(Simulation, WholeRightHandSideIsOfSecondOrderInTime) {
+  // Smooth as far as SPH goes: no walls near, no switches (tension kept, no artificial viscosity), strong elastic soil.
+  const auto position_after = [](double dt) {
+    Model m = collapse(0.1);
+    m.terrain.bed = {{-10, -10}, {10, -10}};
+    m.terrain.left_wall = false;
+    m.g = {0, 0};
+    m.materials = {{"soil", 2000, 0, 1e9, 0}};
+    m.numerics.alpha = 0, m.numerics.tension_cutoff = false, m.numerics.c_s = 20;
+    m.time.fixed_step = dt, m.time.end = 0.01;
+    Simulation simulation(m, plan_particles(m));
+    Soil& s = simulation.mutable_soil();
+    for (std::size_t i = 0; i < s.size(); ++i) s.vx[i] = 0.3 * std::sin(2 * s.y[i]), s.vy[i] = 0.2 * std::cos(3 * s.x[i]), s.rho[i] = 2000;
+    run(simulation, m.time.end);
+    std::vector<double> x(s.size());
+    for (std::size_t i = 0; i < s.size(); ++i) x[static_cast<std::size_t>(s.id[i])] = s.vx[i];
+    return x;
+  };
+  const auto difference = [](const std::vector<double>& a, const std::vector<double>& b) {
+    double worst = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(a[i] - b[i]));
+    return worst;
+  };
+  const auto coarse = position_after(4e-4), middle = position_after(2e-4), fine = position_after(1e-4);
+  EXPECT_NEAR(std::log2(difference(coarse, middle) / difference(middle, fine)), 2.0, 0.2);
+}
+
+TEST(Simulation, NoParticleAndTooManyAreRefused) {
+  Model m = collapse(0.1);
+  m.max_particles = 50;
+  try {
+    plan_particles(m);
+    FAIL();
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("max_particles"), std::string::npos);
+  }
+  m = collapse(5.0);
+  EXPECT_THROW(plan_particles(m), ConfigError);
+}
+
+TEST(Simulation, FrameIsInOrderOfIdWithTheStressOfPlaneStrain) {
+  Model m = collapse(0.1);
+  Simulation simulation(m, plan_particles(m));
+  const Frame start = simulation.frame();
+  for (int k = 0; k < 60; ++k) simulation.step(m.time.end);
+  const Frame f = simulation.frame();
+  ASSERT_EQ(f.n_soil, 80u);
+  ASSERT_EQ(f.position.size(), 80u + simulation.walls().size());
+  for (std::size_t i = 0; i < f.position.size(); ++i) {
+    const Vec2 d = f.position[i] - start.position[i];
+    EXPECT_NEAR(d.x, f.displacement[i].x, 1e-14);
+    EXPECT_NEAR(d.y, f.displacement[i].y, 1e-14);
+    EXPECT_NEAR(f.stress[i][0] + f.stress[i][1] + f.stress[i][2], -3 * f.pressure[i], 1e-6);
+    if (i >= f.n_soil) { EXPECT_EQ(norm(f.velocity[i]), 0.0); }
+  }
+}
+
+}  // namespace
+}  // namespace talus
