@@ -1,7 +1,194 @@
+// talus study: many realizations, each a process of its own, and what they say together.
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "case/load.hpp"
+#include "cli/signals.hpp"
 #include "cli/verbs.hpp"
+#include "cli/version.hpp"
+#include "figures/figures.hpp"
+#include "io/files.hpp"
+#include "study/driver.hpp"
+#include "study/paths.hpp"
 
 namespace talus::cli {
+namespace {
 
-void add_study(CLI::App& app, Action&) { app.add_subcommand("study"); }
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t most_exact_integer = (std::uint64_t{1} << 53) - 1;  ///< what every reader of JSON keeps exact
+constexpr std::size_t max_summary_bytes = std::size_t{256} << 20;
+
+struct StudyOptions {
+  fs::path case_file, out;
+  std::vector<std::string> overrides;
+  std::optional<std::int64_t> realizations;
+  std::optional<std::uint64_t> seed;
+  std::optional<int> workers;
+  std::vector<std::int64_t> range;  ///< first and last, both included
+  int threads = 1;
+  bool json = false, retry_failed = false, no_figures = false;
+};
+
+int terminal_width() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+/// Progress on stderr: one line that is redrawn on a terminal, a plain line now and then elsewhere.
+class Reporter {
+ public:
+  void show(const Progress& progress) {
+    if (terminal_)
+      std::cerr << "\r" << painted(progress_bar(progress, terminal_width() - 1)) << "\033[K" << std::flush;
+    else if (const auto now = Clock::now(); progress.made_now != made_ && now - shown_ >= std::chrono::seconds(10)) {
+      std::cerr << progress_line(progress) << "\n";
+      shown_ = now;
+      made_ = progress.made_now;
+    }
+    last_ = progress;
+  }
+  void note(const std::string& text) { std::cerr << (terminal_ ? "\r\033[K" : "") << text << "\n"; }
+  /// Leaves the last state on a line of its own.
+  void finish() {
+    if (last_) note(progress_line(*std::exchange(last_, std::nullopt)));
+  }
+  ~Reporter() { finish(); }
+
+ private:
+  /// The bar in green, where colours are wanted (https://no-color.org).
+  static std::string painted(const std::string& line) {
+    const char* no_color = std::getenv("NO_COLOR");
+    const std::size_t end = line.find(']');
+    if ((no_color && *no_color) || end == std::string::npos) return line;
+    return "\033[32m" + line.substr(0, end + 1) + "\033[0m" + line.substr(end + 1);
+  }
+
+  bool terminal_ = ::isatty(STDERR_FILENO) != 0;
+  std::optional<Progress> last_;
+  std::int64_t made_ = 0;
+  Clock::time_point shown_ = Clock::now();
+};
+
+/// --seed, else the case's, else that of the study already begun in --out, else one from the clock.
+std::uint64_t choose_seed(const StudyOptions& options, const Case& problem) {
+  if (options.seed) return *options.seed;
+  if (problem.study.seed) return *problem.study.seed;
+  const std::optional<Plan> begun = find_plan(options.out);
+  return begun ? begun->seed : seed_from_clock();
+}
+
+DriverOptions driver_options(const StudyOptions& options, const Plan& plan, Reporter& reporter) {
+  DriverOptions driver;
+  driver.program = {fs::read_symlink("/proc/self/exe").string(), "run"};
+  driver.threads = options.threads;
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  driver.workers = options.workers.value_or(std::max(1, cores / options.threads));
+  if (!options.range.empty()) {
+    if (plan.study.stop_half_width)
+      throw ConfigError("/study/stop_when_ci_half_width_below_m",
+                        "only a whole study can stop early; remove this key or --range");
+    driver.first = options.range.front();
+    driver.last = options.range.back() + 1;
+  }
+  driver.retry_failed = options.retry_failed;
+  driver.interrupts = [] { return stop_requested() ? 1 : 0; };
+  driver.report = [&reporter](const Progress& progress) { reporter.show(progress); };
+  driver.note = [&reporter](const std::string& text) { reporter.note(text); };
+  return driver;
+}
+
+/// The study itself is done; figures that cannot be drawn are no reason to fail.
+void draw_figures(const fs::path& directory) try {
+  plot_study(directory);
+  std::cerr << "figures: " << StudyPaths{directory}.figures().string() << "\n";
+} catch (const IoError& e) {
+  std::cerr << "no figures: " << e.what() << "\n";
+}
+
+void print(const fs::path& directory, bool json) {
+  const std::string text = read_file(StudyPaths{directory}.summary(), max_summary_bytes);
+  if (json) {
+    std::cout << text;
+    return;
+  }
+  const auto study = nlohmann::ordered_json::parse(text);
+  std::cout << summary_table(study) << "\ninfluence zone [m]\n"
+            << text_histogram(study.at("quantities").at("influence_zone_m"), 80);
+}
+
+Exit exit_code(Outcome outcome) {
+  if (outcome == Outcome::interrupted) return Exit::interrupted;
+  return outcome == Outcome::too_many_failed ? Exit::too_many_failed : Exit::ok;
+}
+
+Exit study(const StudyOptions& options) {
+  if (!options.range.empty() && options.range.front() > options.range.back()) {
+    std::cerr << "--range: the first realization comes after the last\n";
+    return Exit::usage;
+  }
+  std::vector<std::string> overrides = options.overrides;
+  if (options.realizations) overrides.push_back("study.realizations=" + std::to_string(*options.realizations));
+  LoadedCase loaded = load_case(options.case_file, overrides);
+  for (const Fault& w : loaded.warnings) std::cerr << "warning: " << w.pointer << " " << w.message << "\n";
+  const Plan plan = make_plan(loaded, choose_seed(options, loaded.value), version());
+  loaded.resolved["study"]["seed"] = plan.seed;
+
+  catch_stop_signals();
+  Outcome outcome{};
+  {
+    Reporter reporter;
+    outcome = run_study(plan, loaded.resolved, options.out, driver_options(options, plan, reporter));
+  }
+  const Exit code = exit_code(outcome);
+  if (outcome == Outcome::interrupted) std::cerr << "stopped; the same command goes on where it was\n";
+  if (outcome == Outcome::too_many_failed)
+    std::cerr << "more realizations failed than study.max_failed_share = " << plan.study.max_failed_share
+              << " allows; see " << StudyPaths{options.out}.realizations().string() << "\n";
+  if (outcome != Outcome::interrupted && !options.no_figures) draw_figures(options.out);
+  print(options.out, options.json);
+  return code;
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, Action& action) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* verb = app.add_subcommand(
+      "study", "Run many realizations: realizations.csv, study.json, figures; the same command goes on after a stop");
+  verb->add_option("case", options->case_file, "case file (JSON)")->required();
+  verb->add_option("--out", options->out, "directory for the results; created, empty, or holding this study")
+      ->required();
+  verb->add_option("--realizations", options->realizations, "how many; otherwise the case's study.realizations")
+      ->check(CLI::Range(1, 1'000'000'000));
+  verb->add_option("--seed", options->seed,
+                   "seed of the random fields; otherwise the case's, otherwise a new one, which is recorded")
+      ->check(CLI::Range(std::uint64_t{0}, most_exact_integer));
+  verb->add_option("--workers", options->workers, "processes at a time; otherwise cores / threads")
+      ->check(CLI::Range(1, 4096));
+  verb->add_option("--threads", options->threads, "OpenMP threads of each process")->check(CLI::Range(1, 4096));
+  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")
+      ->allow_extra_args(false);
+  verb->add_option(
+          "--range", options->range,
+          "run only realizations FIRST to LAST of the planned ones here, the others elsewhere; join with talus stats")
+      ->expected(2)
+      ->type_name("FIRST LAST")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_flag("--retry-failed", options->retry_failed, "run again the realizations that have failed");
+  verb->add_flag("--no-figures", options->no_figures, "draw none at the end");
+  verb->add_flag("--json", options->json, "print study.json on stdout");
+  verb->callback([options, &action] { action = [options] { return study(*options); }; });
+}
 
 }  // namespace talus::cli

@@ -39,6 +39,17 @@ const ordered_json* quantile(const ordered_json& quantity, double p) {
   return nullptr;
 }
 
+/// "0-3, 7, ..." of ranges with both ends included.
+std::string ranges(const ordered_json& all) {
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, all.size()); ++i) {
+    text.append(i == 0 ? "" : ", ").append(all[i][0].dump());
+    if (all[i][0] != all[i][1]) text.append("-").append(all[i][1].dump());
+  }
+  return all.size() > most ? text + ", ..." : text;
+}
+
 }  // namespace
 
 std::optional<double> time_left(const Progress& p) {
@@ -77,14 +88,14 @@ std::string summary_table(const ordered_json& study) {
   text += format("%lld realizations planned, %lld done, %lld failed", n.at("planned").get<long long>(),
                  n.at("done").get<long long>(), n.at("failed").get<long long>());
   if (n.at("stopped_early").get<bool>()) text += "; stopped early, the mean is known well enough";
-  if (!n.at("complete").get<bool>()) text += "; not complete";
+  if (!n.at("complete").get<bool>()) text += "; not made yet: " + ranges(n.at("missing"));
   text += "\nseed " + study.at("provenance").at("seed").dump() + ", captured variance " +
           number(study.at("captured_variance"));
   const ordered_json& phi = study.at("mean_friction_angle_deg");
   text += ", mean friction angle " + number(phi.at("mean"), "%.2f") + " deg, stdev " + number(phi.at("stdev"), "%.2f") +
           " deg\n\n";
   text += format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", "", "mean", "95 % interval", "stdev", "95 % interval",
-                 "floor", "median", "95 %");
+                 "floor", "median", "q95");
   for (const auto& [key, q] : study.at("quantities").items()) {
     const ordered_json* median = quantile(q, 0.5);
     const ordered_json* high = quantile(q, 0.95);

@@ -12,6 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t max_case_bytes = std::size_t{1} << 30;
 constexpr const char* index_name = "index";
 constexpr const char* replicate_name = "replicate";
 
@@ -88,6 +89,17 @@ Tables merge(const std::vector<fs::path>& directories) {
   }
   if (!faults.empty()) throw ConfigError(std::move(faults));
   return all;
+}
+
+void write_merged(const fs::path& out, const Tables& tables, const fs::path& origin) {
+  if (fs::exists(StudyPaths{out}.runs()))
+    throw IoError("cannot write into " + out.string() +
+                  ": it holds a study with runs of its own; choose another directory");
+  OutputDirectory claimed(out, OutputKind::study, tables.plan.case_hash, true);
+  write_file_atomically(StudyPaths{out}.resolved_case(), read_file(StudyPaths{origin}.resolved_case(), max_case_bytes));
+  write_plan(out, tables.plan);
+  write_tables(StudyPaths{out}, tables.plan, counted(tables.plan, tables.runs), tables.floor);
+  claimed.mark_finished();
 }
 
 }  // namespace talus

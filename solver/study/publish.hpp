@@ -34,4 +34,9 @@ Tables read_tables(const std::filesystem::path& directory);
 /// @throws ConfigError naming every difference: case hash, seed, version, sampling, or a realization with two results
 Tables merge(const std::vector<std::filesystem::path>& directories);
 
+/// Makes `out` the directory of a merged study: tables, study.json, plan, and the case of `origin`, one of the
+/// directories merged.
+/// @throws IoError when `out` holds anything but an earlier merge of the same case
+void write_merged(const std::filesystem::path& out, const Tables& tables, const std::filesystem::path& origin);
+
 }  // namespace talus

@@ -1,5 +1,6 @@
 #include "math/error.hpp"
 #include "studies.hpp"
+#include "study/driver.hpp"
 #include "study/publish.hpp"
 #include "study/summary.hpp"
 
@@ -99,6 +100,23 @@ TEST(Merge, LatinHypercubesMustBeOne) {
   const auto b = study(d.path / "b", eight, {done(1, 35.0)});
   EXPECT_NE(refusal({a, b}).find("size of the Latin hypercube is 8 there, not 6"), std::string::npos);
   EXPECT_EQ(refusal({a, study(d.path / "c", six, {done(1, 35.0)})}), "accepted");
+}
+
+TEST(Merge, WritesAStudyThatCanBeMergedAgainButNotRun) {
+  const TemporaryDirectory d;
+  const auto a = study(d.path / "a", plan(3), {done(0, 34.0)});
+  const auto b = study(d.path / "b", plan(3), {done(1, 35.0)});
+  write(a / "case.resolved.json", "{}");
+  for (int again = 0; again < 2; ++again) write_merged(d.path / "all", merge({a, b}), a);
+  EXPECT_EQ(read_tables(d.path / "all").runs.size(), 2u);
+  EXPECT_EQ(content(d.path / "all" / "case.resolved.json"), "{}");
+  EXPECT_THROW(run_study(plan(3), {}, d.path / "all", {}), IoError);
+  fs::create_directories(b / "runs");
+  EXPECT_THROW(write_merged(b, merge({a, b}), a), IoError);
+  fs::create_directories(d.path / "foreign");
+  write(d.path / "foreign" / "thesis.tex", "x");
+  EXPECT_THROW(write_merged(d.path / "foreign", merge({a, b}), a), IoError);
+  EXPECT_FALSE(fs::exists(d.path / "foreign" / "study.json"));
 }
 
 TEST(Counted, EndsWhereTheStudyStopped) {
