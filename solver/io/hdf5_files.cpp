@@ -56,7 +56,8 @@ std::string doing(std::string_view verb, hid_t parent, const std::string& name) 
   H5Fget_name(parent, file.data(), file.size());
   H5Iget_name(parent, group.data(), group.size());
   const std::string place = std::string_view(group.data()) == "/" ? "" : group.data();
-  return "cannot " + std::string(verb) + " " + place + "/" + name + " in " + file.data();
+  const std::string object = name.empty() ? place : place + "/" + name;
+  return "cannot " + std::string(verb) + " " + (object.empty() ? "" : object + " in ") + file.data();
 }
 
 void check(herr_t status, std::string_view verb, hid_t parent, const std::string& name) {
