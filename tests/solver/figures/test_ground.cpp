@@ -1,0 +1,56 @@
+#include <gtest/gtest.h>
+
+#include "figures/ground.hpp"
+#include "reading.hpp"
+
+namespace talus::figures {
+namespace {
+
+const Terrain slope{.bed = {{0, 10}, {10, 0}, {40, 0}}, .wall_top = 15};
+
+TEST(Ground, ClippedCutsExactlyAtBothEnds) {
+  const std::vector<Vec2> part = clipped(slope.bed, 4, 25);
+  ASSERT_EQ(part.size(), 3u);
+  EXPECT_EQ(part[0], (Vec2{4, 6}));
+  EXPECT_EQ(part[1], (Vec2{10, 0}));
+  EXPECT_EQ(part[2], (Vec2{25, 0}));
+}
+
+TEST(Ground, BoundaryHasTheWallsThatStandInView) {
+  EXPECT_EQ(boundary(slope, -1, 20).front(), (Vec2{0, 15}));
+  EXPECT_EQ(boundary(slope, 1, 20).front(), (Vec2{1, 9}));
+  Terrain open = slope;
+  open.left_wall = false;
+  EXPECT_EQ(boundary(open, -1, 20).front(), (Vec2{0, 10}));
+  open.right_wall = true;
+  EXPECT_EQ(boundary(open, -1, 50).back(), (Vec2{40, 15}));
+}
+
+TEST(Ground, ARingIsWalkedWhole) {
+  const Terrain ring{.bed = {{0, 0}, {4, 0}, {4, 3}, {0, 3}}, .closed = true};
+  const std::vector<Vec2> line = boundary(ring, 1, 2);
+  ASSERT_EQ(line.size(), 5u);
+  EXPECT_EQ(line.front(), line.back());
+}
+
+TEST(Ground, BedHeightInterpolates) {
+  EXPECT_DOUBLE_EQ(bed_height(slope, 2.5), 7.5);
+  EXPECT_DOUBLE_EQ(bed_height(slope, 30), 0);
+  EXPECT_DOUBLE_EQ(bed_height(slope, -3), 10);
+  EXPECT_DOUBLE_EQ(bed_height(slope, 99), 0);
+}
+
+TEST(Ground, HatchingLiesBehindTheLineAtEvenSteps) {
+  // The corner is passed: 3 + 4 long, strokes at 2, 4, 6.
+  const std::vector<Stroke> strokes = hatching({{0, 3}, {0, 0}, {4, 0}}, 2.0, 0.5);
+  ASSERT_EQ(strokes.size(), 3u);
+  EXPECT_EQ(strokes[0].from, (Vec2{0, 1}));
+  EXPECT_EQ(strokes[1].from, (Vec2{1, 0}));
+  EXPECT_EQ(strokes[2].from, (Vec2{3, 0}));
+  EXPECT_LT(strokes[0].along.x, 0);  // left of the wall
+  EXPECT_LT(strokes[1].along.y, 0);  // under the bed
+  for (const Stroke& s : strokes) EXPECT_NEAR(norm(s.along), 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace talus::figures
