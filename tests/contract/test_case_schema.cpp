@@ -1,0 +1,106 @@
+// The schema's own house: every key described, its defaults those that the reader fills in.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "case/load.hpp"
+#include "schema_check.hpp"
+
+namespace talus {
+namespace {
+
+using nlohmann::json;
+
+/// Calls f(pointer, key schema, required) for every key of every object, arrays of objects by their element 0.
+void for_each_key(const json& schema, const std::string& pointer,
+                  const std::function<void(const std::string&, const json&, bool)>& f) {
+  const json required = schema.value("required", json::array());
+  for (const auto& [key, child] : schema.at("properties").items()) {
+    const std::string here = pointer + "/" + key;
+    f(here, child, std::find(required.begin(), required.end(), key) != required.end());
+    if (child.contains("properties")) for_each_key(child, here, f);
+    if (child.contains("items") && child["items"].contains("properties")) for_each_key(child["items"], here + "/0", f);
+  }
+}
+
+TEST(CaseSchema, DescribesEveryKey) {
+  const test::SchemaCheck schema("case");
+  std::size_t keys = 0;
+  for_each_key(schema.document(), "", [&](const std::string& pointer, const json& key, bool) {
+    ++keys;
+    const std::string description = key.value("description", "");
+    EXPECT_GE(description.size(), 20u) << pointer;
+    if (key["type"] != "number" && key["type"] != "integer") return;
+    for (const char* word : {"Unit: ", "range: ", "source: "})
+      EXPECT_NE(description.find(word), std::string::npos) << pointer << " " << word;
+    EXPECT_TRUE(description.find("default: ") != std::string::npos || description.find("required") != std::string::npos)
+        << pointer;
+  });
+  EXPECT_GT(keys, 90u);
+}
+
+TEST(CaseSchema, ClosesEveryObject) {
+  const test::SchemaCheck schema("case");
+  EXPECT_EQ(schema.document()["additionalProperties"], false);
+  for_each_key(schema.document(), "", [](const std::string& pointer, const json& key, bool) {
+    EXPECT_TRUE(!key.contains("properties") || key.value("additionalProperties", true) == false) << pointer;
+  });
+}
+
+/// The unit in a number's key is the unit in its description.
+TEST(CaseSchema, UnitsStandInTheKeys) {
+  const test::SchemaCheck schema("case");
+  const std::pair<const char*, const char*> suffixes[] = {
+      {"_kg_m3", "kg/m3"}, {"_m_s2", "m/s2"}, {"_m_s", "m/s"}, {"_Pa_s", "Pa s"}, {"_Pa", "Pa"},
+      {"_deg", "deg"},     {"_1_s", "1/s"},   {"_m", "m"},     {"_s", "s"},       {"", "-"}};
+  for_each_key(schema.document(), "", [&](const std::string& pointer, const json& key, bool) {
+    if (key["type"] != "number") return;
+    for (const auto& [suffix, unit] : suffixes)
+      if (pointer.ends_with(suffix)) {
+        EXPECT_NE(key["description"].get<std::string>().find(std::string("Unit: ") + unit + ";"), std::string::npos)
+            << pointer;
+        break;
+      }
+  });
+}
+
+TEST(CaseSchema, DefaultsAreTheReaders) {
+  const test::SchemaCheck schema("case");
+  auto document = nlohmann::ordered_json::parse(test::slurp(test::source("schemas/examples/good/case-minimal.json")));
+  document["random_field"] = {{"correlation_length_m", 1}, {"log_stdev", 0.1}};
+  const json plain = json::parse(load_case(document, "").resolved.dump());
+  document["time"]["stop_at_rest"] = true;
+  const json stopping = json::parse(load_case(document, "").resolved.dump());
+  std::size_t defaults = 0;
+  for_each_key(schema.document(), "", [&](const std::string& pointer, const json& key, bool) {
+    const json& resolved = pointer.starts_with("/time/stop_at_rest/") ? stopping : plain;
+    if (!key.contains("default")) return;
+    ++defaults;
+    const json::json_pointer at(pointer);
+    ASSERT_TRUE(resolved.contains(at)) << pointer;
+    EXPECT_EQ(resolved[at], key["default"]) << pointer;
+    const std::string description = key["description"];
+    const json& standard = key["default"];
+    const std::string shown = standard.is_string() ? standard.get<std::string>() : standard.dump();
+    EXPECT_NE(description.find("efault: " + (shown.empty() ? "empty" : shown)), std::string::npos)
+        << pointer << " says another default";
+  });
+  EXPECT_GT(defaults, 45u);
+}
+
+/// Nothing is filled in silently: a key of the resolved case was given, or has a default in the schema, or is derived
+/// and says so.
+TEST(CaseSchema, SaysWhatTheReaderFillsIn) {
+  const test::SchemaCheck schema("case");
+  const auto given = json::parse(test::slurp(test::source("schemas/examples/good/case-minimal.json")));
+  const json resolved = json::parse(load_case(test::source("schemas/examples/good/case-minimal.json")).resolved.dump());
+  for_each_key(schema.document(), "", [&](const std::string& pointer, const json& key, bool) {
+    const json::json_pointer at(pointer);
+    if (!resolved.contains(at) || given.contains(at) || key.contains("default") || key.contains("properties")) return;
+    EXPECT_TRUE(pointer == "/terrain/left_boundary_m" || pointer == "/terrain/wall_top_m") << pointer;
+  });
+}
+
+}  // namespace
+}  // namespace talus

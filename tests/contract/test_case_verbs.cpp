@@ -1,0 +1,85 @@
+// talus validate and talus schema as other programs call them: output, streams, exit codes.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+struct Outcome {
+  int code;
+  std::string out;  ///< stdout alone
+};
+
+Outcome talus(const std::string& arguments) {
+  const std::string command = std::string(TALUS_BINARY_DIR) + "/bin/talus " + arguments + " 2>/dev/null";
+  FILE* pipe = popen(command.c_str(), "r");
+  std::string out;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) out.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, out};
+}
+
+const std::string good = std::string(TALUS_SOURCE_DIR) + "/schemas/examples/good/case-full.json";
+const std::string bad = std::string(TALUS_SOURCE_DIR) + "/schemas/examples/bad/case-schema-out-of-range.json";
+
+TEST(Validate, SoundCase) {
+  const Outcome text = talus("validate " + good);
+  EXPECT_EQ(text.code, 0);
+  EXPECT_NE(text.out.find("captured variance"), std::string::npos);
+  const Outcome outcome = talus("validate --json " + good);
+  EXPECT_EQ(outcome.code, 0);
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["valid"], true);
+  EXPECT_GT(json["particles"]["soil"], 100);
+  EXPECT_GT(json["particles"]["wall"], 100);
+  EXPECT_EQ(json["step_s"], 0.001);
+  EXPECT_EQ(json["steps"], 5000);
+  EXPECT_GT(json["memory_bytes"], 1e6);
+  EXPECT_EQ(json["field"]["terms"], 3);
+  EXPECT_GT(json["field"]["captured_variance"], 0.0);
+  EXPECT_EQ(json["hash"].get<std::string>().size(), 16u);
+  EXPECT_TRUE(json["warnings"].is_array());
+}
+
+TEST(Validate, BadCase) {
+  const Outcome text = talus("validate " + bad);
+  EXPECT_EQ(text.code, 3);
+  EXPECT_EQ(text.out, "") << "messages belong on stderr";
+  const Outcome outcome = talus("validate --json " + bad);
+  EXPECT_EQ(outcome.code, 3);
+  const auto json = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(json["valid"], false);
+  EXPECT_EQ(json["faults"].size(), 5u);
+  EXPECT_EQ(json["faults"][0]["pointer"], "/material/density_kg_m3");
+}
+
+TEST(Validate, Overrides) {
+  EXPECT_EQ(nlohmann::json::parse(
+                talus("validate --json --set time.fixed_step_s=0.0005 --set random_field=null " + good).out)["steps"],
+            10'000);
+  const auto json = nlohmann::json::parse(talus("validate --json " + good + " --set time.fixed_step_s=fast").out);
+  EXPECT_NE(json["faults"][0]["message"].get<std::string>().find("(from --set time.fixed_step_s=fast)"),
+            std::string::npos);
+}
+
+TEST(Validate, ExitCodes) {
+  EXPECT_EQ(talus("validate /nonexistent/case.json").code, 5);
+  EXPECT_EQ(talus("validate").code, 2);
+  EXPECT_EQ(talus("validate --no-such-option " + good).code, 2);
+}
+
+TEST(Schema, PrintsListsAndRefuses) {
+  const Outcome outcome = talus("schema case");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(nlohmann::json::parse(outcome.out)["title"], "Talus case");
+  EXPECT_NE(talus("schema").out.find("case\n"), std::string::npos);
+  EXPECT_EQ(talus("schema cases").code, 2);
+}
+
+}  // namespace

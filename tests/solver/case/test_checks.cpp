@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include "case/checks.hpp"
+#include "documents.hpp"
+
+namespace talus {
+namespace {
+
+using test::faults_of;
+using test::minimal;
+using test::with;
+
+bool sound(const Json& document) { return faults_of(document).empty(); }
+
+TEST(Checks, HalfASpacingBelowTheBedIsTolerated) {
+  // The vertex at (8, y) stands over the bed's height 1.
+  const auto sunk = [](double depth) { return with("/slide/outlines/0/outline_m/1", {8, 1.0 - depth}); };
+  EXPECT_TRUE(sound(sunk(0.24)));
+  EXPECT_FALSE(sound(sunk(0.26)));
+}
+
+TEST(Checks, OverlapBelowOneCellIsTolerated) {
+  const auto layered = [](double bottom) {
+    Json document = minimal();
+    document["slide"]["outlines"].push_back({{"outline_m", {{0, bottom}, {4, bottom}, {4, 9}, {0, 9}}}});
+    return document;
+  };
+  EXPECT_TRUE(sound(layered(8.0)));
+  EXPECT_TRUE(sound(layered(7.95)));   // 4 * 0.05 = 0.2 m2 < 0.25 m2
+  EXPECT_FALSE(sound(layered(7.93)));  // 0.28 m2
+}
+
+TEST(Checks, SuggestedSpacingFits) {
+  const auto faults = faults_of(with("/particle_spacing_m", 0.01, with("/max_particles", 10'000)));
+  ASSERT_EQ(faults.size(), 1u);
+  const auto at = faults[0].find("a spacing from ");
+  ASSERT_NE(at, std::string::npos) << faults[0];
+  const double spacing = std::stod(faults[0].substr(at + 15));
+  EXPECT_TRUE(sound(with("/particle_spacing_m", 1.01 * spacing, with("/max_particles", 10'000))));
+  EXPECT_FALSE(sound(with("/particle_spacing_m", 0.99 * spacing, with("/max_particles", 10'000))));
+}
+
+TEST(Checks, WallLayersFillTheSupport) {
+  const auto layers = [](double ratio, int n) {
+    return with("/numerics/smoothing_ratio", ratio, with("/walls/layers", n));
+  };
+  EXPECT_TRUE(sound(layers(1.2, 2)));   // 2 * 1.2 - 0.5 = 1.9
+  EXPECT_FALSE(sound(layers(1.3, 2)));  // 2.1
+  EXPECT_TRUE(sound(layers(2.0, 4)));
+}
+
+TEST(Doubts, AnOpenEndWithinReach) {
+  // Crest (5, 8) at 30 deg reaches y = 0 at x = 5 + 8/tan(30 deg) = 18.86.
+  const auto far = test::load(with("/terrain/bed_m/2", {19, 0}));
+  EXPECT_TRUE(far.warnings.empty());
+  const auto near = test::load(with("/terrain/bed_m/2", {18, 0}));
+  ASSERT_EQ(near.warnings.size(), 1u);
+  EXPECT_EQ(near.warnings[0].pointer, "/terrain/right_end");
+  EXPECT_TRUE(test::load(with("/terrain/right_end", "wall", with("/terrain/bed_m/2", {18, 0}))).warnings.empty());
+}
+
+TEST(Doubts, AWallLowerThanTheSlide) {
+  EXPECT_EQ(test::load(with("/terrain/wall_top_m", 7)).warnings.size(), 1u);
+  EXPECT_EQ(test::load(with("/terrain/wall_top_m", 8)).warnings.size(), 0u);
+}
+
+TEST(Doubts, AStepInWhichSoundCrossesASmoothingLength) {
+  const Json document = with("/numerics/sound_speed_m_s", 100);  // h = 0.6 m
+  EXPECT_TRUE(test::load(with("/time/fixed_step_s", 0.0059, document)).warnings.empty());
+  EXPECT_EQ(test::load(with("/time/fixed_step_s", 0.0061, document)).warnings.size(), 1u);
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,205 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iomanip>
+#include <numbers>
+#include <sstream>
+
+#include "case/load.hpp"
+#include "documents.hpp"
+
+namespace talus {
+namespace {
+
+using test::faults_of;
+using test::minimal;
+using test::with;
+
+TEST(LoadCase, DefaultsAreThoseOfTheStructs) {
+  const Case c = test::load(minimal()).value;
+  EXPECT_EQ(c.model.rheology, Rheology{});
+  EXPECT_EQ(c.model.numerics, Numerics{});
+  EXPECT_EQ(c.model.walls, Walls{});
+  EXPECT_EQ(c.study, StudySpec{});
+  EXPECT_EQ(c.model.g, Model{}.g);
+  EXPECT_EQ(c.model.placement, Model{}.placement);
+  EXPECT_EQ(c.model.max_particles, Model{}.max_particles);
+  EXPECT_EQ(c.model.time.snapshots, TimeControl{}.snapshots);
+  EXPECT_EQ(c.model.time.stop_at_rest, TimeControl{}.stop_at_rest);
+  EXPECT_EQ(c.model.terrain.left_wall, Terrain{}.left_wall);
+  EXPECT_EQ(c.model.terrain.right_wall, Terrain{}.right_wall);
+  EXPECT_FALSE(c.field);
+}
+
+TEST(LoadCase, ConvertsDegreesToRadians) {
+  Json document = with("/walls/slip", "friction", with("/walls/friction_angle_deg", 15));
+  const Case c = test::load(document).value;
+  EXPECT_NEAR(c.model.materials[0].phi, std::numbers::pi / 6, 1e-15);
+  EXPECT_NEAR(c.model.walls.phi, std::numbers::pi / 12, 1e-15);
+}
+
+TEST(LoadCase, EveryNumberReachesItsMember) {
+  Json document =
+      with("/material",
+           Json::parse(R"({"name":"m","density_kg_m3":1,"friction_angle_deg":2,"cohesion_Pa":3,"viscosity_Pa_s":4})"));
+  document["gravity_m_s2"] = 5;
+  document["rheology"] = {
+      {"shear_rate", "paper"}, {"yield", "regularized"}, {"min_shear_rate_1_s", 6}, {"shear_modulus_Pa", 7}};
+  document["numerics"] = {{"kernel", "wendland_c2"},
+                          {"smoothing_ratio", 1.25},
+                          {"sound_speed_m_s", 8},
+                          {"artificial_viscosity_alpha", 9},
+                          {"artificial_viscosity_beta", 10},
+                          {"continuity", "mass"},
+                          {"density_filter", "delta_sph"},
+                          {"filter_interval_steps", 11},
+                          {"delta_sph_coefficient", 0.12},
+                          {"tension_cutoff", false},
+                          {"initial_pressure", "stress_free"},
+                          {"integrator", "leapfrog"},
+                          {"cfl", 0.13}};
+  document["walls"] = {{"contact", "approaching"}, {"slip", "free_slip"}, {"max_velocity_ratio", 14}, {"layers", 15}};
+  document["time"] = {{"end_s", 16}, {"max_step_s", 17}, {"stop_at_rest", {{"speed_m_s", 18}, {"hold_s", 19}}}};
+  const Model m = test::load(document).value.model;
+  EXPECT_EQ(m.materials[0], (Material{"m", 1, 2 * std::numbers::pi / 180, 3, 4}));
+  EXPECT_EQ(m.g, (Vec2{0, -5}));
+  EXPECT_EQ(m.rheology, (Rheology{ShearRate::paper, Yield::regularized, 6, 7.0}));
+  EXPECT_EQ(m.numerics,
+            (Numerics{KernelShape::wendland_c2, 1.25, 8.0, 9, 10, Continuity::mass, DensityFilter::delta_sph, 11, 0.12,
+                      false, InitialPressure::stress_free, Integrator::leapfrog, 0.13}));
+  EXPECT_EQ(m.walls, (Walls{WallContact::approaching, WallSlip::free_slip, 0.0, 14, 15}));
+  EXPECT_EQ(m.time, (TimeControl{16, {}, 17.0, {}, StopAtRest{18, 19}}));
+}
+
+TEST(LoadCase, FieldAndStudyReachTheirMembers) {
+  Json document = minimal();
+  document["random_field"] = {{"correlation_length_x_m", 1},
+                              {"correlation_length_y_m", 2},
+                              {"log_mean", -0.3},
+                              {"log_stdev", -0.4},
+                              {"direction", "y"},
+                              {"sampler", "circulant_embedding"},
+                              {"truncation", "diagonal"},
+                              {"terms", 6},
+                              {"variance_share", 0.7},
+                              {"root_intervals", "paper"},
+                              {"cell_average", true},
+                              {"domain_m", {{"x", {8, 9}}, {"y", {10, 11}}}},
+                              {"xi", {12, -13}},
+                              {"grid_spacing_m", 14}};
+  document["study"] = {{"realizations", 1},           {"seed", 2},
+                       {"noise_floor_replicates", 3}, {"sampling", "latin_hypercube"},
+                       {"stratified_modes", 4},       {"stop_when_ci_half_width_below_m", 5},
+                       {"max_failed_share", 0.6},     {"histogram_edges_m", {7, 8}}};
+  const Case c = test::load(document).value;
+  FieldSpec f{FieldDirection::y,
+              1,
+              2,
+              -0.3,
+              -0.4,
+              FieldSampler::circulant_embedding,
+              Truncation::diagonal,
+              6,
+              0.7,
+              RootIntervals::paper,
+              true,
+              Box{{8, 10}, {9, 11}},
+              {12, -13},
+              14.0};
+  EXPECT_EQ(c.field, f);
+  EXPECT_EQ(c.study, (StudySpec{1, 2, 3, Sampling::latin_hypercube, 4, 5.0, 0.6, {7, 8}}));
+}
+
+TEST(LoadCase, MeanAndCovBecomeLogParameters) {
+  const auto field = [](Json section) { return *test::load(with("/random_field", std::move(section))).value.field; };
+  const double cov = 0.3, mean = 0.5, sigma2 = std::log(1 + cov * cov);
+  const FieldSpec both = field({{"correlation_length_m", 1}, {"mean_tan_phi", mean}, {"cov_tan_phi", cov}});
+  EXPECT_NEAR(both.sigma, std::sqrt(sigma2), 1e-15);
+  EXPECT_NEAR(*both.mu, std::log(mean) - 0.5 * sigma2, 1e-15);
+  const FieldSpec spread = field({{"correlation_length_m", 1}, {"cov_tan_phi", cov}});
+  EXPECT_EQ(spread.sigma, both.sigma);
+  EXPECT_FALSE(spread.mu) << "the median is the material's";
+  EXPECT_EQ(spread.ell_x, 1.0);
+  EXPECT_EQ(spread.ell_y, 1.0);
+}
+
+TEST(LoadCase, DerivedDefaultsOfTheTerrain) {
+  const Terrain t = test::load(with("/terrain/bed_m", {{-1, 5.5}, {10, 0}, {40, 0}})).value.model.terrain;
+  EXPECT_EQ(t.left_boundary, -1.0);
+  EXPECT_EQ(t.wall_top, 8.0 + 5 * 0.5) << "over the slide";
+  const Terrain high = test::load(with("/terrain/bed_m", {{-9, 20}, {0, 5}, {10, 0}, {40, 0}})).value.model.terrain;
+  EXPECT_EQ(high.wall_top, 20.0 + 5 * 0.5) << "over the bed where a wall stands";
+}
+
+TEST(LoadCase, ClosedBedsRunCounterClockwiseWithoutRepetition) {
+  Json document = with("/terrain", Json::parse(R"({"bed_m": [[0,0],[0,9],[20,9],[20,0],[0,0]], "closed": true})"));
+  document["slide"]["outlines"][0]["outline_m"] = {{0, 0}, {5, 0}, {5, 5}, {0, 5}, {0, 0}};
+  const Model m = test::load(document).value.model;
+  EXPECT_EQ(m.terrain.bed, (std::vector<Vec2>{{20, 0}, {20, 9}, {0, 9}, {0, 0}}));
+  EXPECT_EQ(m.terrain.left_boundary, 0.0);
+  EXPECT_EQ(m.slide[0].outline.size(), 4u);
+}
+
+TEST(LoadCase, LayersOverrideTheDefaultMaterialInPart) {
+  Json document = with("/slide/outlines/0/material", {{"cohesion_Pa", 700}});
+  document["slide"]["outlines"].push_back(
+      {{"outline_m", {{0, 8}, {5, 8}, {5, 9}, {0, 9}}}, {"material", {{"cohesion_Pa", 700}}}});
+  const Model m = test::load(document).value.model;
+  ASSERT_EQ(m.materials.size(), 2u) << "one for both layers";
+  EXPECT_EQ(m.slide[0].material, 1);
+  EXPECT_EQ(m.slide[1].material, 1);
+  EXPECT_EQ(m.materials[1].c, 700.0);
+  EXPECT_EQ(m.materials[1].rho0, m.materials[0].rho0);
+  EXPECT_EQ(m.materials[1].phi, m.materials[0].phi);
+}
+
+TEST(LoadCase, SnapshotsAtAnIntervalLieInside) {
+  const auto times = [](double end, double interval) {
+    return test::load(with("/time", {{"end_s", end}, {"snapshot_interval_s", interval}})).value.model.time.snapshots;
+  };
+  EXPECT_EQ(times(5, 2), (std::vector<double>{2, 4}));
+  EXPECT_EQ(times(6, 2), (std::vector<double>{2, 4}));
+  EXPECT_EQ(times(0.3, 0.1).size(), 2u) << "3 * 0.1 exceeds 0.3 by rounding only";
+  EXPECT_EQ(faults_of(with("/time", {{"end_s", 5}, {"snapshot_interval_s", 1e-6}})).size(), 1u);
+}
+
+TEST(LoadCase, CollectsTheFaultsOfAllSections) {
+  Json document = minimal();
+  document.erase("title");
+  document["material"]["cohesion_Pa"] = "5 kPa";
+  document["material"]["friction_angle"] = 30;
+  document["terrain"]["bed_m"][1] = {0, 0};
+  document["study"] = {{"seed", -1}};
+  const auto faults = faults_of(document);
+  ASSERT_EQ(faults.size(), 5u);
+  EXPECT_EQ(faults[1], "/material/cohesion_Pa: \"5 kPa\" is not a number; unit Pa, allowed >= 0 and <= 1e+09");
+  EXPECT_EQ(faults[2], "/material/friction_angle: is not a known key (friction_angle_deg?)");
+}
+
+TEST(LoadCase, FileFromNowhereIsAnInputError) { EXPECT_THROW(load_case("/nonexistent/case.json"), IoError); }
+
+TEST(CaseHash, FollowsWhatDecidesTheRuns) {
+  const std::string hash = test::load(minimal()).hash;
+  EXPECT_EQ(hash.size(), 16u);
+  EXPECT_EQ(test::load(with("/title", "other")).hash, hash);
+  EXPECT_EQ(test::load(with("/description", "other")).hash, hash);
+  EXPECT_EQ(test::load(with("/study", {{"realizations", 7}, {"seed", 3}, {"histogram_edges_m", {1, 2}}})).hash, hash);
+  EXPECT_EQ(test::load(with("/particle_spacing_m", 0.5)).hash, hash);
+  EXPECT_EQ(test::load(with("/numerics/cfl", Numerics{}.cfl)).hash, hash) << "a default spelt out";
+  EXPECT_NE(test::load(with("/numerics/cfl", 0.2)).hash, hash);
+  EXPECT_NE(test::load(with("/study/sampling", "latin_hypercube")).hash, hash);
+  EXPECT_NE(test::load(with("/material/friction_angle_deg", 30.000001)).hash, hash);
+}
+
+TEST(CaseHash, IsFnv1a) {
+  // FNV-1a of the two bytes "{}" by the published recurrence (Fowler, Noll, Vo; offset 14695981039346656037, prime
+  // 1099511628211).
+  const auto step = [](std::uint64_t h, unsigned char c) { return (h ^ c) * 1099511628211ULL; };
+  std::ostringstream expected;
+  expected << std::hex << std::setw(16) << std::setfill('0') << step(step(14695981039346656037ULL, '{'), '}');
+  EXPECT_EQ(case_hash(Json::object()), expected.str());
+  EXPECT_EQ(case_hash({{"a", 1}, {"b", 2}}), case_hash({{"b", 2}, {"a", 1}}));
+}
+
+}  // namespace
+}  // namespace talus

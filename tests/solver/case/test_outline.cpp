@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "case/outline.hpp"
+
+namespace talus {
+namespace {
+
+using Points = std::vector<Vec2>;
+
+TEST(SelfMeeting, FindsCrossingTouchingAndFolding) {
+  EXPECT_FALSE(self_meeting(Points{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, true));
+  EXPECT_FALSE(self_meeting(Points{{0, 0}, {1, 0}, {2, 0}, {2, 1}}, true)) << "a straight corner is no fold";
+  const auto bow_tie = self_meeting(Points{{0, 0}, {2, 2}, {2, 0}, {0, 2}}, true);
+  ASSERT_TRUE(bow_tie);
+  EXPECT_EQ(bow_tie->first, 0u);
+  EXPECT_EQ(bow_tie->second, 2u);
+  EXPECT_TRUE(self_meeting(Points{{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}, true)) << "a vertex on another edge";
+  EXPECT_TRUE(self_meeting(Points{{0, 0}, {2, 0}, {1, 0}, {1, 3}}, true)) << "an edge folded back";
+  EXPECT_TRUE(self_meeting(Points{{0, 0}, {2, 0}, {2, 0}, {1, 3}}, true)) << "a vertex repeated";
+  EXPECT_TRUE(self_meeting(Points{{0, 0}, {4, 0}, {4, 4}, {2, 2}, {4, 4}, {0, 4}}, true)) << "a spike to a vertex";
+}
+
+TEST(SelfMeeting, AnOpenLineMayEndWhereARingMayNot) {
+  const Points u = {{0, 0}, {0, 2}, {2, 2}, {2, 0}};
+  EXPECT_FALSE(self_meeting(u, false));
+  const Points hook = {{0, 0}, {2, 0}, {2, 2}, {1, -1}};
+  EXPECT_TRUE(self_meeting(hook, false));
+}
+
+TEST(SelfMeeting, StarOfManyVerticesIsSimpleUntilTwoAreSwapped) {
+  Points star;
+  for (int k = 0; k < 500; ++k) {
+    const double angle = 2 * M_PI * k / 500, r = k % 2 == 0 ? 1.0 : 0.8;
+    star.push_back({r * std::cos(angle), r * std::sin(angle)});
+  }
+  EXPECT_FALSE(self_meeting(star, true));
+  std::swap(star[100], star[103]);
+  EXPECT_TRUE(self_meeting(star, true));
+}
+
+TEST(Areas, AreSignedAndShared) {
+  const Points square = {{0, 0}, {2, 0}, {2, 2}, {0, 2}}, clockwise(square.rbegin(), square.rend());
+  EXPECT_EQ(signed_area(square), 4.0);
+  EXPECT_EQ(signed_area(clockwise), -4.0);
+  const Points moved = {{1.5, 0.5}, {3, 0.5}, {3, 1.5}, {1.5, 1.5}};
+  EXPECT_NEAR(shared_area(square, moved), 0.5 * 1.0, 1e-6);
+  EXPECT_NEAR(shared_area(clockwise, moved), 0.5 * 1.0, 1e-6);
+  const Points beside = {{2, 0}, {3, 0}, {3, 2}, {2, 2}};
+  EXPECT_NEAR(shared_area(square, beside), 0.0, 1e-6) << "layers share an edge";
+}
+
+TEST(BetweenSurfaces, GivesThePieceBetween) {
+  // A parabola-like ground of 3 points over a flat slip surface: triangle of base 4 and height 2.
+  const auto pieces = between_surfaces(Points{{0, 0}, {2, 2}, {4, 0}}, Points{{-1, 0}, {5, 0}});
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_NEAR(signed_area(pieces[0]), 0.5 * 4 * 2, 1e-9);
+  EXPECT_NEAR(pieces[0][0].x, 0.0, 1e-9) << "starts at the left";
+}
+
+TEST(BetweenSurfaces, GivesSeveralPiecesFromLeftToRight) {
+  // sin-like zigzag about the slip surface y = 0: above it on (0,2) and (4,6), below it on (2,4).
+  const auto pieces = between_surfaces(Points{{0, 0}, {1, 1}, {3, -1}, {5, 1}, {6, 0}}, Points{{0, 0}, {6, 0}});
+  ASSERT_EQ(pieces.size(), 2u);
+  EXPECT_NEAR(signed_area(pieces[0]), 0.5 * 2 * 1, 1e-9);
+  EXPECT_NEAR(signed_area(pieces[1]), 0.5 * 2 * 1, 1e-9);
+  EXPECT_LT(pieces[0][0].x, pieces[1][0].x);
+}
+
+TEST(BetweenSurfaces, TakesCliffsAndShortSurfaces) {
+  // A vertical step from 0 to 3 at x = 2; the slip surface spans 1..4 only.
+  const auto pieces = between_surfaces(Points{{0, 0}, {2, 0}, {2, 3}, {6, 3}}, Points{{1, 1}, {4, 1}});
+  ASSERT_EQ(pieces.size(), 1u);
+  EXPECT_NEAR(signed_area(pieces[0]), 2.0 * 2.0, 1e-9);
+  EXPECT_TRUE(between_surfaces(Points{{0, 0}, {1, 0}}, Points{{0, 1}, {1, 1}}).empty());
+  EXPECT_TRUE(between_surfaces(Points{{0, 0}, {1, 0}}, Points{{2, -1}, {3, -1}}).empty()) << "no common extent";
+}
+
+/// Deepest point below the bed, by sampling the outline densely.
+double sampled_depth(const Points& outline, const Points& bed) {
+  double worst = 0.0;
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    for (int i = 0; i <= 1000; ++i) {
+      const Vec2 a = outline[k], b = outline[(k + 1) % outline.size()], p = a + (i / 1000.0) * (b - a);
+      for (std::size_t s = 0; s + 1 < bed.size(); ++s)
+        if (bed[s].x <= p.x && p.x <= bed[s + 1].x) {
+          const double y = bed[s].y + (bed[s + 1].y - bed[s].y) * (p.x - bed[s].x) / (bed[s + 1].x - bed[s].x);
+          worst = std::max(worst, y - p.y);
+        }
+    }
+  return worst;
+}
+
+TEST(DepthBelowBed, AgreesWithDenseSampling) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> u(0.0, 10.0);
+  for (int trial = 0; trial < 50; ++trial) {
+    Points bed, outline;
+    for (int k = 0; k <= 10; ++k) bed.push_back({static_cast<double>(k), 0.3 * u(random)});
+    for (int k = 0; k < 5; ++k) outline.push_back({u(random), u(random)});
+    EXPECT_NEAR(depth_below_bed(outline, bed).depth, sampled_depth(outline, bed), 0.05) << trial;
+  }
+}
+
+TEST(DepthBelowBed, SeesAHumpUnderAnEdge) {
+  const Points bed = {{0, 0}, {5, 1}, {10, 0}}, outline = {{1, 0.2}, {9, 0.2}, {9, 3}, {1, 3}};
+  const Intrusion in = depth_below_bed(outline, bed);
+  EXPECT_NEAR(in.depth, 0.8, 1e-12);
+  EXPECT_EQ(in.at.x, 5.0);
+  EXPECT_EQ(depth_below_bed(Points{{1, 1}, {9, 1}, {5, 3}}, bed).depth, 0.0);
+}
+
+TEST(ReachOutsideRing, MeasuresOverhangAndCoveredRock) {
+  const Points ring = {{0, 0}, {10, 0}, {10, 6}, {0, 6}};
+  EXPECT_EQ(reach_outside_ring(Points{{0, 0}, {10, 0}, {10, 4}, {0, 4}}, ring).depth, 0.0);
+  EXPECT_NEAR(reach_outside_ring(Points{{0, 0}, {10, 0}, {10, 7}, {0, 7}}, ring).depth, 1.0, 1e-9);
+  const Points notched = {{0, 0}, {4, 0}, {4, 3}, {6, 3}, {6, 0}, {10, 0}, {10, 6}, {0, 6}};
+  EXPECT_NEAR(reach_outside_ring(Points{{0, 0}, {10, 0}, {10, 4}, {0, 4}}, notched).depth, 2.0 * 6.0 / 10.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace talus

@@ -1,0 +1,49 @@
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "case/words.hpp"
+
+namespace talus {
+namespace {
+
+const std::vector<std::string> keys = {"cohesion_Pa", "friction_angle_deg", "viscosity_Pa_s"};
+
+TEST(EditDistance, IsLevenshteins) {
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);  // the textbook example
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("abc", ""), 3u);
+  EXPECT_EQ(edit_distance("same", "same"), 0u);
+  EXPECT_EQ(edit_distance("ab", "ba"), 2u);
+}
+
+TEST(NearestName, IsTheNearestOrNone) {
+  EXPECT_EQ(nearest_name("friction_angle", keys), "friction_angle_deg");
+  EXPECT_EQ(nearest_name("cohesion_kPa", keys), "cohesion_Pa");
+  EXPECT_EQ(nearest_name("colour", keys), "");
+  EXPECT_EQ(nearest_name(std::string(100'000, 'x'), keys), "");
+}
+
+TEST(Suggestion, NamesTheNearestElseAll) {
+  EXPECT_EQ(suggestion("viscosity", keys), " (viscosity_Pa_s?)");
+  EXPECT_EQ(suggestion("zzz", keys), "; known: cohesion_Pa, friction_angle_deg, viscosity_Pa_s");
+}
+
+TEST(Shorten, CutsBetweenCharactersAndHidesControls) {
+  EXPECT_EQ(shorten("abcdef", 3), "abc...");
+  EXPECT_EQ(shorten("abc", 3), "abc");
+  EXPECT_EQ(shorten("a\xC3\xA4"
+                    "b",
+                    2),
+            "a...");  // a-umlaut takes bytes 1 and 2: not cut in two
+  EXPECT_EQ(shorten("a\nb\x1b[31m"), "a?b?[31m");
+}
+
+TEST(Numbers, AreWrittenShort) {
+  EXPECT_EQ(to_text(0.1), "0.1");
+  EXPECT_EQ(to_text(Vec2{1.5, -2}), "(1.5, -2)");
+  EXPECT_EQ(rounded(1.0 / 3.0), "0.333");
+}
+
+}  // namespace
+}  // namespace talus
