@@ -1,5 +1,6 @@
 // talus: one verb a file; errors become exit codes here and nowhere else.
 
+#include <csignal>
 #include <exception>
 #include <iostream>
 
@@ -17,6 +18,7 @@ int report(talus::Exit code, const std::string& text) {
 
 int main(int argc, char** argv) {
   using talus::Exit;
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error with a message, not a sudden death
   CLI::App app{"Talus: how far will it run, and how sure are we?", "talus"};
   app.set_version_flag("--version", talus::cli::version_text());
   app.require_subcommand(1);

@@ -172,6 +172,7 @@ Exit run(const RunOptions& options) {
 
   Simulation simulation(problem.model, plan, soil_strength.tan_phi);
   const CheckpointHeader header{version(), loaded.hash, identity.seed, identity.realization, options.perturbation};
+  if (!options.resume) fs::remove(checkpoint_file);  // of an unfinished run that is being started over
   const bool resumed = options.resume && fs::exists(checkpoint_file);
   double earlier = 0.0;  // wall clock of the run's earlier processes
   if (resumed) {

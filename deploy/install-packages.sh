@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# install-packages.sh [build] [test] [tsan]: Debian packages that Talus needs; does nothing where all of them are there.
+# Needs root or sudo only if something is missing.
+set -euo pipefail
+
+build=(cmake ninja-build g++ pkg-config libeigen3-dev libhdf5-dev libboost-dev nlohmann-json3-dev libcli11-dev libspdlog-dev
+       libhwy-dev librandom123-dev gnuplot-nox fonts-dejavu-core)
+test=(libgtest-dev libvalijson-dev python3-venv python3-pip)
+tsan=(clang-16 libomp-16-dev)
+
+wanted=()
+for group in "${@:-build}"; do
+  case $group in
+    build) wanted+=("${build[@]}") ;;
+    test) wanted+=("${test[@]}") ;;
+    tsan) wanted+=("${tsan[@]}") ;;
+    *) echo "install-packages.sh: no group '$group' (build, test, tsan)" >&2; exit 2 ;;
+  esac
+done
+
+missing=()
+for package in "${wanted[@]}"; do
+  [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+if [ "$(id -u)" -eq 0 ]; then
+  as_root=()
+elif command -v sudo >/dev/null; then
+  as_root=(sudo)
+else
+  echo "install-packages.sh: not root and no sudo; ask for: apt-get install ${missing[*]}" >&2
+  exit 1
+fi
+echo "installing ${missing[*]}" >&2
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -qq >&2
+"${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2

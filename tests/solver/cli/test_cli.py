@@ -1,0 +1,329 @@
+#!/usr/bin/env python3
+"""The command line as other programs call it: files, exit codes, stdout and stderr, signals, kill -9.
+
+usage: test_cli.py TALUS SOURCE_DIR [unittest arguments]; --slow-study runs the study at 0.2 m instead of everything else
+"""
+import csv
+import json
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import h5py
+import jsonschema
+
+TALUS, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+SLOPE = SOURCE / "solver/cases/illustrative.json"
+COARSE = ["--set", "particle_spacing_m=0.8", "--set", "time.end_s=3", "--set", "time.snapshot_times_s=[1,2]"]
+ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", OMP_WAIT_POLICY="passive")
+
+
+def talus(*arguments, **options):
+    return subprocess.run([TALUS, *map(str, arguments)], capture_output=True, text=True, env=ENVIRONMENT, timeout=280, **options)
+
+
+def start(*arguments):
+    return subprocess.Popen([TALUS, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
+
+
+def wait_for(condition, what, seconds=120):
+    deadline = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > deadline:
+            raise AssertionError(f"waited {seconds} s for {what}")
+        time.sleep(0.02)
+
+
+def load(path):
+    return json.loads(pathlib.Path(path).read_text())
+
+
+def check_schema(name, document):
+    jsonschema.Draft7Validator(load(SOURCE / f"schemas/{name}.schema.json")).validate(document)
+
+
+class Directory(unittest.TestCase):
+    def setUp(self):
+        self.dir = pathlib.Path(tempfile.mkdtemp(prefix="talus-cli-"))
+        self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
+
+    def case(self, **changes):
+        """The coarse slope as a file with top-level members replaced."""
+        document = load(SLOPE)
+        document.update(particle_spacing_m=0.8)
+        document["time"] = {"end_s": 3}
+        document.update(changes)
+        path = self.dir / "case.json"
+        path.write_text(json.dumps(document))
+        return path
+
+    def run_ok(self, out, *arguments):
+        done = talus("run", SLOPE, *COARSE, "--out", self.dir / out, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return load(self.dir / out / "result.json")
+
+
+class Basics(Directory):
+    def test_version_and_help_are_data(self):
+        done = talus("--version")
+        self.assertEqual(done.returncode, 0)
+        for word in ("talus 0.", "compiler", "pair loops"):
+            self.assertIn(word, done.stdout)
+        self.assertEqual(talus("run", "--help").returncode, 0)
+
+    def test_wrong_usage_is_2(self):
+        for arguments in ([], ["run"], ["run", SLOPE], ["nonsense"], ["run", SLOPE, "--out", self.dir / "x", "--threads", "0"],
+                          ["run", SLOPE, "--out", self.dir / "x", "--realization", "-1"]):
+            done = talus(*arguments)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), arguments)
+            self.assertTrue(done.stderr)
+
+    def test_bad_case_is_3_and_writes_nothing(self):
+        out = self.dir / "out"
+        for verb in ("run", "study"):
+            done = talus(verb, self.case(material={"density_kg_m3": -1, "friction_angle": 25}), "--out", out)
+            self.assertEqual((done.returncode, done.stdout), (3, ""))
+            self.assertIn("/material/density_kg_m3", done.stderr)
+            self.assertIn("friction_angle_deg", done.stderr)
+            self.assertFalse(out.exists())
+
+    def test_unknown_override_is_3(self):
+        done = talus("run", SLOPE, "--set", "particle_spacing=0.4", "--out", self.dir / "out")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("particle_spacing_m", done.stderr)
+
+    def test_missing_case_is_5(self):
+        done = talus("run", self.dir / "none.json", "--out", self.dir / "out")
+        self.assertEqual(done.returncode, 5)
+        self.assertIn("none.json", done.stderr)
+
+    def test_foreign_directory_is_5_and_stays_as_it_was(self):
+        foreign = self.dir / "home"
+        foreign.mkdir()
+        (foreign / "thesis.tex").write_text("mine")
+        for verb in ("run", "study"):
+            done = talus(verb, SLOPE, *COARSE, "--out", foreign)
+            self.assertEqual(done.returncode, 5, done.stderr)
+            self.assertIn(str(foreign), done.stderr)
+        self.assertEqual([p.name for p in foreign.iterdir()], ["thesis.tex"])
+
+    def test_unwritable_place_is_5(self):
+        blocked = self.dir / "file"
+        blocked.write_text("")
+        done = talus("run", SLOPE, *COARSE, "--out", blocked / "out")
+        self.assertEqual(done.returncode, 5)
+
+    def test_a_full_disk_is_5_and_leaves_no_result(self):
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+        done = talus("run", SLOPE, *COARSE, "--set", "particle_spacing_m=0.3", "--out", self.dir / "out", preexec_fn=limit)
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertFalse((self.dir / "out/result.json").exists())
+
+    def test_schemas_are_printed(self):
+        for name in ("case", "result", "study"):
+            done = talus("schema", name)
+            self.assertEqual(json.loads(done.stdout), load(SOURCE / f"schemas/{name}.schema.json"))
+        self.assertNotEqual(talus("schema", "cas").returncode, 0)
+
+
+class Run(Directory):
+    def test_writes_what_the_contract_names(self):
+        result = self.run_ok("a")
+        check_schema("result", result)
+        for name in ("result.json", "case.resolved.json", "snapshots.vtkhdf", "snapshots.xdmf", "history.csv"):
+            self.assertTrue((self.dir / "a" / name).stat().st_size > 0, name)
+        self.assertEqual((result["penetrated"], result["threads"]), (0, 1))
+        self.assertEqual(result["steps"] * 2, result["evaluations"])
+        self.assertIsNone(result["provenance"]["realization"])
+        with h5py.File(self.dir / "a/snapshots.vtkhdf") as f:
+            times = list(f["VTKHDF/Steps/Values"])
+        self.assertEqual(len(times), 4)  # start, 1 s, 2 s, end
+        self.assertEqual((times[0], times[3]), (0.0, 3.0))
+        self.assertTrue(1.0 <= times[1] < 1.01 and 2.0 <= times[2] < 2.01)
+        rows = list(csv.DictReader(open(self.dir / "a/history.csv")))
+        self.assertAlmostEqual(float(rows[-1]["front_m"]), result["influence_zone_m"])
+
+    def test_the_resolved_case_runs_to_the_same_digest(self):
+        first = self.run_ok("a", "--realization", 4, "--seed", 11)
+        done = talus("run", self.dir / "a/case.resolved.json", "--realization", 4, "--out", self.dir / "b")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(load(self.dir / "b/result.json")["digest"], first["digest"])
+
+    def test_json_is_one_value_on_stdout(self):
+        done = talus("run", SLOPE, *COARSE, "--out", self.dir / "a", "--json", "--figures")
+        self.assertEqual(json.loads(done.stdout), load(self.dir / "a/result.json"))
+        self.assertTrue(list((self.dir / "a/figures").glob("*.png")))
+
+    def test_threads_and_snapshots_do_not_change_the_digest(self):
+        one = self.run_ok("a", "--threads", 1)
+        for threads in (2, 3):
+            self.assertEqual(self.run_ok(f"t{threads}", "--threads", threads)["digest"], one["digest"])
+        self.assertEqual(self.run_ok("s", "--set", "time.snapshot_times_s=[]")["digest"], one["digest"])
+
+    def test_seeds_realizations_and_the_median_differ_and_repeat(self):
+        digests = [self.run_ok(name, *arguments)["digest"] for name, arguments in
+                   {"a": ["--realization", 0, "--seed", 1], "b": ["--realization", 1, "--seed", 1],
+                    "c": ["--realization", 0, "--seed", 2], "d": []}.items()]
+        self.assertEqual(len(set(digests)), 4)
+        self.assertEqual(self.run_ok("e", "--realization", 1, "--seed", 1)["digest"], digests[1])
+
+    def test_a_seed_is_drawn_and_recorded(self):
+        a, b = self.run_ok("a", "--realization", 0), self.run_ok("b", "--realization", 0)
+        self.assertNotEqual(a["provenance"]["seed"], b["provenance"]["seed"])
+        again = self.run_ok("c", "--realization", 0, "--seed", a["provenance"]["seed"])
+        self.assertEqual(again["digest"], a["digest"])
+
+    def test_a_finished_run_is_not_overwritten(self):
+        first = self.run_ok("a")
+        done = talus("run", SLOPE, *COARSE, "--out", self.dir / "a")
+        self.assertEqual(done.returncode, 5)
+        done = talus("run", SLOPE, *COARSE, "--out", self.dir / "a", "--resume", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout), first)
+
+    def test_a_signal_checkpoints_with_6_and_resume_gives_the_same_run(self):
+        fine = ["--set", "particle_spacing_m=0.3", "--set", "time.snapshot_times_s=[0.5,1,1.5,2]"]
+        whole = self.run_ok("whole", *fine, "--realization", 2, "--seed", 5)
+        for number in (signal.SIGTERM, signal.SIGINT):
+            out = self.dir / f"stopped-{number}"
+            process = start("run", SLOPE, *COARSE, *fine, "--realization", 2, "--seed", 5, "--out", out)
+            wait_for((out / "snapshots.vtkhdf").exists, "the run to begin")
+            time.sleep(0.4)
+            process.send_signal(number)
+            _, stderr = process.communicate(timeout=60)
+            self.assertEqual(process.returncode, 6, stderr)
+            self.assertIn("--resume", stderr)
+            self.assertTrue((out / "checkpoint.h5").exists())
+            self.assertFalse((out / "result.json").exists())
+            done = talus("run", SLOPE, *COARSE, *fine, "--realization", 2, "--out", out, "--resume", "--threads", 2)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            result = load(out / "result.json")
+            for key in ("digest", "steps", "evaluations", "influence_zone_m", "max_speed_m_s"):
+                self.assertEqual(result[key], whole[key], key)
+            with h5py.File(out / "snapshots.vtkhdf") as a, h5py.File(self.dir / "whole/snapshots.vtkhdf") as b:
+                self.assertEqual(a["VTKHDF/Steps/Values"][:].tolist(), b["VTKHDF/Steps/Values"][:].tolist())
+                self.assertTrue((a["VTKHDF/PointData/velocity"][:] == b["VTKHDF/PointData/velocity"][:]).all())
+            self.assertEqual((out / "history.csv").read_text(), (self.dir / "whole/history.csv").read_text())
+            self.assertFalse((out / "checkpoint.h5").exists())
+
+    def test_divergence_is_4_names_the_place_and_keeps_the_snapshots(self):
+        done = talus("run", self.case(time={"end_s": 100, "fixed_step_s": 0.05, "snapshot_times_s": [0.05]}), "--out", self.dir / "a")
+        self.assertEqual((done.returncode, done.stdout), (4, ""))
+        for word in ("step", "time", "particle"):
+            self.assertIn(word, done.stderr)
+        self.assertFalse((self.dir / "a/result.json").exists())
+        with h5py.File(self.dir / "a/snapshots.vtkhdf") as f:
+            self.assertGreaterEqual(f["VTKHDF/Steps"].attrs["NSteps"], 1)
+
+
+class Study(Directory):
+    arguments = ["study", SLOPE, "--set", "particle_spacing_m=0.8", "--set", "time.end_s=3", "--set", "study.noise_floor_replicates=2",
+                 "--seed", 3, "--workers", 2, "--threads", 1]
+
+    def study(self, out, realizations, *arguments):
+        return talus(*self.arguments, "--realizations", realizations, "--out", self.dir / out, *arguments)
+
+    def test_from_case_to_histogram(self):
+        done = self.study("a", 6, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        study = load(self.dir / "a/study.json")
+        self.assertEqual(json.loads(done.stdout), study)
+        check_schema("study", study)
+        self.assertEqual(study["realizations"]["done"], 6)
+        for name, quantity in study["quantities"].items():
+            counts = quantity["histogram"]
+            self.assertEqual(sum(counts["counts"]) + counts["underflow"] + counts["overflow"], 6, name)
+            self.assertIsNotNone(quantity["noise_floor_stdev"], name)
+        rows = list(csv.DictReader(open(self.dir / "a/realizations.csv")))
+        self.assertEqual([int(row["index"]) for row in rows], list(range(6)))
+        self.assertTrue(list((self.dir / "a/figures").glob("*.png")))
+        alone = talus("run", SLOPE, "--set", "particle_spacing_m=0.8", "--set", "time.end_s=3", "--seed", 3, "--realization", 4, "--out",
+                      self.dir / "alone")
+        self.assertEqual(alone.returncode, 0, alone.stderr)
+        self.assertEqual(load(self.dir / "alone/result.json")["digest"], rows[4]["digest"])
+        self.assertEqual(talus("stats", self.dir / "a", "--out", self.dir / "again").returncode, 0)
+        self.assertEqual(load(self.dir / "again/study.json")["quantities"], study["quantities"])
+
+    def test_extending_a_study_leaves_its_first_runs_alone(self):
+        self.assertEqual(self.study("a", 3, "--no-figures").returncode, 0)
+        before = {p.name: (p.stat().st_mtime_ns, p.read_text()) for p in (self.dir / "a/runs").iterdir()}
+        self.assertEqual(self.study("a", 5, "--no-figures").returncode, 0)
+        for name, content in before.items():
+            path = self.dir / "a/runs" / name
+            self.assertEqual((path.stat().st_mtime_ns, path.read_text()), content)
+        self.assertEqual(self.study("b", 5, "--no-figures").returncode, 0)
+        digests = [[row["digest"] for row in csv.DictReader(open(self.dir / d / "realizations.csv"))] for d in "ab"]
+        self.assertEqual(*digests)
+
+    def test_another_seed_in_the_same_directory_is_refused(self):
+        self.assertEqual(self.study("a", 2, "--no-figures").returncode, 0)
+        done = talus(*self.arguments[:-6], "--seed", 4, "--realizations", 2, "--out", self.dir / "a")
+        self.assertEqual(done.returncode, 3, done.stderr)
+
+    def test_too_many_failures_is_7_and_they_stay_in_the_denominator(self):
+        done = talus("study", self.case(time={"end_s": 100, "fixed_step_s": 0.05}), "--realizations", 3, "--seed", 1, "--out", self.dir / "a", "--no-figures")
+        self.assertEqual(done.returncode, 7, done.stderr)
+        rows = list(csv.DictReader(open(self.dir / "a/realizations.csv")))
+        self.assertEqual([row["status"] for row in rows], ["failed"] * 3)
+        self.assertIn("diverged", rows[0]["reason"])
+
+    def kill_and_resume(self, out, realizations, *arguments):
+        command = [*self.arguments, *arguments, "--realizations", realizations, "--out", self.dir / out, "--no-figures"]
+        process = start(*command)
+        runs = self.dir / out / "runs"
+        wait_for(lambda: runs.is_dir() and len(list(runs.glob("*.json"))) >= realizations // 2, "half of the study", 900)
+        process.kill()
+        process.communicate()
+        time.sleep(0.5)  # the workers go with it
+        finished = {p.name: p.stat().st_mtime_ns for p in runs.glob("*.json")}
+        self.assertLess(len(finished), realizations)
+        done = subprocess.run([TALUS, *map(str, command)], capture_output=True, text=True, env=ENVIRONMENT, timeout=1100)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name, mtime in finished.items():
+            self.assertEqual((runs / name).stat().st_mtime_ns, mtime, f"{name} was run twice")
+        study = load(self.dir / out / "study.json")
+        self.assertEqual(study["realizations"]["done"], realizations)
+        return [row["digest"] for row in csv.DictReader(open(self.dir / out / "realizations.csv"))]
+
+    def test_kill_9_half_way_then_resume(self):
+        digests = self.kill_and_resume("killed", 6, "--set", "particle_spacing_m=0.5")
+        self.assertEqual(self.study("whole", 6, "--no-figures", "--set", "particle_spacing_m=0.5").returncode, 0)
+        self.assertEqual(digests, [row["digest"] for row in csv.DictReader(open(self.dir / "whole/realizations.csv"))])
+
+    def test_sigterm_is_6_and_the_workers_leave_checkpoints(self):
+        command = [*self.arguments, "--set", "particle_spacing_m=0.3", "--realizations", 4, "--out", self.dir / "a", "--no-figures"]
+        process = start(*command)
+        wait_for(lambda: list((self.dir / "a").glob("work/*/snapshots.vtkhdf")), "the first worker")
+        time.sleep(0.5)
+        process.terminate()
+        _, stderr = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 6, stderr)
+        self.assertTrue(list((self.dir / "a").glob("work/*/checkpoint.h5")))
+        done = talus(*command)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
+
+class SlowStudy(Study):
+    """The illustrative slope, 8 realizations at 0.2 m, killed half way."""
+
+    arguments = ["study", SLOPE, "--set", "particle_spacing_m=0.2", "--set", "study.noise_floor_replicates=0", "--seed", 3, "--workers", 2, "--threads", 1]
+
+    def test_kill_9_half_way_then_resume(self):
+        self.assertEqual(len(set(self.kill_and_resume("killed", 8))), 8)
+
+
+if __name__ == "__main__":
+    rest = sys.argv[3:]
+    if "--slow-study" in rest:
+        suite = unittest.TestSuite([SlowStudy("test_kill_9_half_way_then_resume")])
+        sys.exit(not unittest.TextTestRunner(verbosity=2).run(suite).wasSuccessful())
+    unittest.main(argv=[sys.argv[0], *(rest or ["Basics", "Run", "Study"])], verbosity=2)
