@@ -92,7 +92,8 @@ int main(int argc, char** argv) {
   append(diary, "begin " + name + (resumed ? " resumed\n" : " fresh\n"));
   fs::create_directories(out);
   const std::string what = behaviour[name];
-  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(std::stoi(words[1]));
+  const auto until =
+      std::chrono::steady_clock::now() + std::chrono::milliseconds(std::stoi(words[1]) * (what == "slow" ? 50 : 1));
   while (!asked_to_stop && std::chrono::steady_clock::now() < until)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (asked_to_stop) {

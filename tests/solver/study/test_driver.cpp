@@ -238,13 +238,15 @@ TEST(Driver, AResultOfSomethingElseIsNeverTaken) {
 }
 
 TEST(Driver, StopsEarlyAtTheSameRealizationWhateverTheWorkers) {
-  Study one(200), many(200);
+  // While number 8 is slow, the others run far ahead of where the study will stop.
+  Study one(200, "8=slow"), many(200, "8=slow");
   one.plan.study.stop_half_width = many.plan.study.stop_half_width = 0.25;
   one.plan.study.noise_floor_replicates = many.plan.study.noise_floor_replicates = 2;
   one.options.workers = 1;
   many.options.workers = 9;
   EXPECT_EQ(one.run(), Outcome::stopped_early);
   EXPECT_EQ(many.run(), Outcome::stopped_early);
+  EXPECT_GT(many.count("end "), one.count("end "));
   EXPECT_EQ(content(one.out / "study.json"), content(many.out / "study.json"));
   const json n = one.summary()["realizations"];
   EXPECT_EQ(n["planned"], 200);
@@ -305,14 +307,14 @@ TEST(Driver, TwoStudiesDoNotShareADirectory) {
 
 namespace {
 
-/// Starts the study of `s` as a process, kills it with SIGKILL once `ended` realizations have ended, and finishes it
+/// Starts the study of `s` as a process, kills it with SIGKILL once `begun` runs have begun, and finishes it
 /// here.
-void kill_and_finish(Study& s, int ended) {
+void kill_and_finish(Study& s, int begun) {
   std::vector<std::string> command{STUDY_PROCESS, s.out.string(), std::to_string(s.plan.study.realizations), "3"};
   for (const std::string& word : s.program()) command.push_back(word);
   {
     Process study(command, s.directory.path / "log");
-    wait_until([&] { return s.count("end ") >= ended; });
+    wait_until([&] { return s.count("begin ") >= begun; });
     ASSERT_FALSE(study.poll()) << content(s.directory.path / "log");
     study.signal(SIGKILL);
     wait_until([&] { return study.poll().has_value(); });
@@ -328,7 +330,7 @@ TEST(Driver, SurvivesKill9) {
   s.plan.study.noise_floor_replicates = whole.plan.study.noise_floor_replicates = 2;
   s.plan.study.max_failed_share = whole.plan.study.max_failed_share = 0.1;
   s.milliseconds = 15;
-  kill_and_finish(s, 7);
+  kill_and_finish(s, 10);
   whole.run();
   EXPECT_EQ(content(s.out / "study.json"), content(whole.out / "study.json"));
   EXPECT_EQ(content(s.out / "realizations.csv"), content(whole.out / "realizations.csv"));
@@ -339,8 +341,8 @@ TEST(Driver, AdoptsWhatItsOrphansFinish) {
   Study s(12, "orphan");
   s.plan.study.noise_floor_replicates = 2;
   s.plan.study.max_failed_share = 0.1;
-  s.milliseconds = 30;
-  kill_and_finish(s, 4);
+  s.milliseconds = 300;  // much longer than the next study needs to begin
+  kill_and_finish(s, 6);
   EXPECT_EQ(s.count("begin "), 14);  // workers outlived the study, and nothing at all was started twice
   EXPECT_NE(s.text_of_notes().find("taken over"), std::string::npos);
 }
