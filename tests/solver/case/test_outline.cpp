@@ -20,6 +20,7 @@ TEST(SelfMeeting, FindsCrossingTouchingAndFolding) {
   EXPECT_TRUE(self_meeting(Points{{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}, true)) << "a vertex on another edge";
   EXPECT_TRUE(self_meeting(Points{{0, 0}, {2, 0}, {1, 0}, {1, 3}}, true)) << "an edge folded back";
   EXPECT_TRUE(self_meeting(Points{{0, 0}, {2, 0}, {2, 0}, {1, 3}}, true)) << "a vertex repeated";
+  EXPECT_TRUE(self_meeting(Points{{0, 0}, {2, 0}, {1, 0}}, true)) << "a triangle without area";
   EXPECT_TRUE(self_meeting(Points{{0, 0}, {4, 0}, {4, 4}, {2, 2}, {4, 4}, {0, 4}}, true)) << "a spike to a vertex";
 }
 
