@@ -8,10 +8,13 @@ namespace {
 constexpr Canvas canvas{900, 576};
 constexpr Panel panel{84, 872, 84, 488};
 
+constexpr double least_beyond = 5;  // fewer runs beyond a quantile say too little about it
+
 // A point of the curve that readers ask for.
-void mark(Script& script, const Quantity& q, double quantile, const char* name) {
+void mark(Script& script, const StudyFiles& study, double quantile, const char* name) {
+  const Quantity& q = study.quantities.at("influence_zone_m");
   const auto found = q.quantiles.find(quantile);
-  if (found == q.quantiles.end()) return;
+  if (found == q.quantiles.end() || (1.0 - quantile) * static_cast<double>(study.done) < least_beyond - 1e-9) return;
   const double x = found->second;
   script("set label ", literal(std::string(name) + ": " + fixed(x, 2) + " m"), " at ", x, ",", 1.0 - quantile,
          " left offset 1.2,0.5 front point pointtype 7 pointsize 0.6 linecolor rgb '", vermillion, "' textcolor rgb '",
@@ -38,9 +41,9 @@ Sheet exceedance_sheet(const StudyFiles& study) {
   script("set ytics 0.1");
   script("set xlabel 'x (m), from the left boundary'");
   script("set ylabel 'probability of exceedance'");
-  mark(script, q, 0.5, "half of the runs");
-  mark(script, q, 0.9, "1 in 10");
-  mark(script, q, 0.99, "1 in 100");
+  mark(script, study, 0.5, "half of the runs");
+  mark(script, study, 0.9, "1 in 10");
+  mark(script, study, 0.99, "1 in 100");
   place(script, canvas, panel);
   script("plot $curve using 1:3:4 with filledcurves fillcolor rgb '", blue,
          "' fillstyle transparent solid 0.22 noborder, \\");

@@ -67,7 +67,7 @@ void draw_strip(Script& script, const std::vector<Bar>& all) {
          10, false, bar.colour);
     plot +=
         std::string(plot.empty() ? "" : ", ") + "$" + name +
-        " using (0.5*($1+$2)):3:1:2:($3-0.25):($3+0.25) with boxxyerror fillstyle solid 0.9 noborder linecolor rgb '" +
+        " using (0.5*($1+$2)):3:1:2:($3-0.25):($3+0.25) with boxxyerror fillstyle solid 0.9 border linecolor rgb '" +
         bar.colour + "'";
   }
   script("plot ", plot.empty() ? "NaN" : plot);

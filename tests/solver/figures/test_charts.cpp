@@ -77,6 +77,14 @@ TEST(Charts, ExceedanceIsTheStudysCurve) {
   }
 }
 
+TEST(Charts, QuantilesAreMarkedOnceFiveRunsLieBeyond) {
+  EXPECT_FALSE(contains(exceedance_sheet(example(9, false)).script.text(), "half of the runs"));
+  const std::string script = exceedance_sheet(example(50, false)).script.text();
+  EXPECT_TRUE(contains(script, "'half of the runs: 32.45 m'"));
+  EXPECT_TRUE(contains(script, "1 in 10:"));
+  EXPECT_FALSE(contains(script, "1 in 100:"));
+}
+
 // 30, 30.1, .. 31.9: the mean of the first n is 30 + (n - 1) / 20.
 TEST(Charts, RunningMeanIsThatOfTheFirstN) {
   const Rows rows = block(running_mean_sheet(example(20, false)).script.text(), "means");
@@ -123,6 +131,7 @@ TEST(Charts, SpreadHasEveryMeasureFromTopToBottom) {
   const std::string script = spread_sheet(study).script.text();
   const Rows rows = block(script, "spread");
   ASSERT_EQ(rows.size(), 5u);
+  EXPECT_GT(rows[0][3], rows[4][3]);
   EXPECT_NEAR(rows[0][0], *study.quantities.at("influence_zone_m").stdev, 1e-6);
   EXPECT_NEAR(rows[4][0], *study.quantities.at("centre_of_mass_x_m").stdev, 1e-6);
   EXPECT_NEAR(block(script, "floor")[0][0], *study.quantities.at("influence_zone_m").noise_floor_stdev, 1e-6);
