@@ -129,6 +129,9 @@ std::vector<Fault> find_doubts(const Case& c) {
   if (courant > 1.0)
     doubts.push_back({"/time/fixed_step_s", "is large: sound travels " + rounded(courant) +
                                                 " smoothing lengths in it; expect divergence above 1"});
+  if (c.study.sampling == Sampling::latin_hypercube && c.study.stop_half_width)
+    doubts.push_back({"/study/stop_when_ci_half_width_below_m",
+                      "cannot be kept: a Latin hypercube is one sample of a fixed size; talus study will refuse it"});
   return doubts;
 }
 

@@ -70,5 +70,11 @@ TEST(Doubts, AStepInWhichSoundCrossesASmoothingLength) {
   EXPECT_EQ(test::load(with("/time/fixed_step_s", 0.0061, document)).warnings.size(), 1u);
 }
 
+TEST(Doubts, AHypercubeThatIsToStopEarly) {
+  const Json stopping = with("/study/stop_when_ci_half_width_below_m", 0.1);
+  EXPECT_TRUE(test::load(stopping).warnings.empty());
+  EXPECT_EQ(test::load(with("/study/sampling", "latin_hypercube", stopping)).warnings.size(), 1u);
+}
+
 }  // namespace
 }  // namespace talus
