@@ -65,10 +65,9 @@ void draw_strip(Script& script, const std::vector<Bar>& all) {
     script.data(name, std::array<std::array<double, 3>, 1>{{{bar.lo, bar.hi, bar.row}}});
     text(script, canvas, strip.left - 10, strip.bottom - (bar.row - 0.4) / 3.2 * strip.height(), bar.name, Align::right,
          10, false, bar.colour);
-    plot +=
-        std::string(plot.empty() ? "" : ", ") + "$" + name +
-        " using (0.5*($1+$2)):3:1:2:($3-0.25):($3+0.25) with boxxyerror fillstyle solid 0.9 border linecolor rgb '" +
-        bar.colour + "'";
+    plot += std::string(plot.empty() ? "" : ", ") + "$" + name +
+            " using (0.5*($1+$2)):3:1:2:($3-0.25):($3+0.25) with boxxyerror fillstyle solid 0.9 border rgb '" +
+            bar.colour + "' linecolor rgb '" + bar.colour + "'";
   }
   script("plot ", plot.empty() ? "NaN" : plot);
 }

@@ -69,8 +69,8 @@ Sheet spread_sheet(const StudyFiles& study) {
       "rgb '",
       blue, "', \\");
   script("  $spread using 1:4:2:3 with xerrorbars pointtype 0 linewidth 1 linecolor rgb '", ink, "', \\");
-  script("  $floor using ($1/2):4:(0):1:($4-0.14):($4+0.14) with boxxyerror fillstyle solid 0.9 border linecolor rgb '",
-         vermillion, "'");
+  script("  $floor using ($1/2):4:(0):1:($4-0.14):($4+0.14) with boxxyerror fillstyle solid 0.9 border rgb '",
+         vermillion, "' linecolor rgb '", vermillion, "'");
   return sheet;
 }
 

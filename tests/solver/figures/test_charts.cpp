@@ -156,6 +156,8 @@ TEST(Charts, PngHasTheSizeOfTheCanvasTimesTwo) {
     EXPECT_EQ(test::png_size(directory / "a.png"), (test::Size{static_cast<std::uint32_t>(2 * sheet.canvas.width),
                                                                static_cast<std::uint32_t>(2 * sheet.canvas.height)}));
     sheet.save(directory / "a.svg");
+    // `border linecolor` would colour the border and leave the bar in gnuplot's default.
+    EXPECT_FALSE(contains(sheet.script.text(), " border linecolor"));
     EXPECT_LT(std::filesystem::file_size(directory / "a.svg"), 200'000u);
   }
 }
