@@ -9,18 +9,11 @@
 #include <vector>
 
 #include "figures/canvas.hpp"
+#include "figures/colour.hpp"
 #include "particles/geometry_input.hpp"
 #include "simulation/frame.hpp"
 
 namespace talus::figures {
-
-/// What the particles are coloured by.
-enum class Colour { speed, friction_angle, displacement, pressure };
-
-/// "friction angle (°)" and so on, as it stands beside the colour bar.
-std::string colour_name(Colour colour);
-/// The quantity of one particle in the unit of the picture: m/s, degrees, m, kPa.
-double colour_value(const Frame& frame, std::size_t i, Colour colour);
 
 /// One picture of a sequence.
 struct Snapshot {
@@ -28,17 +21,6 @@ struct Snapshot {
   Colour colour;
   std::string caption;  ///< "t = 2.25 s" if empty
 };
-
-/// Span of the colour bar, in the unit of the picture.
-struct ColourRange {
-  double lo;
-  double hi;
-};
-
-/// Smallest and largest value of the soil of the frames; 0 counts too, except for friction angles.
-ColourRange value_range(std::span<const Frame* const> frames, Colour colour);
-/// The same widened to round numbers; never empty.
-ColourRange rounded(ColourRange range);
 
 struct ProfileOptions {
   bool mark_front = true;  ///< a dashed line and the distance from the left boundary at the farthest particle

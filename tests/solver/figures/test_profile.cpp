@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "example_frame.hpp"
 #include "figures/gnuplot.hpp"
 #include "figures/profile.hpp"
 #include "math/error.hpp"
@@ -13,21 +14,9 @@ namespace {
 
 using test::block;
 using test::contains;
+using test::three_particles;
 
 const Terrain slope{.bed = {{0, 10}, {10, 0}, {40, 0}}, .wall_top = 12, .left_boundary = 1.0};
-
-// Soil of three particles and a wall particle that must not be drawn.
-Frame three_particles() {
-  Frame frame;
-  frame.time = 2.25;
-  frame.n_soil = 3;
-  frame.position = {{2, 9}, {20, 0.5}, {5, 6}, {99, 99}};
-  frame.displacement = {{0, 0}, {3, 4}, {0, 1}, {0, 0}};
-  frame.velocity = {{1, 0}, {0.6, -0.8}, {0, 7}, {0, 0}};
-  frame.pressure = {1000, 0, 25000, 1e9};
-  frame.phi = {20 * std::numbers::pi / 180, 25 * std::numbers::pi / 180, 30 * std::numbers::pi / 180, 0};
-  return frame;
-}
 
 TEST(Profile, DrawsTheSoilAndNothingElse) {
   const Frame frame = three_particles();
@@ -41,14 +30,6 @@ TEST(Profile, DrawsTheSoilAndNothingElse) {
   EXPECT_TRUE(contains(script, "'t = 2.25 s'"));
   // The radius is that of the circle around a square of edge 0.5.
   EXPECT_TRUE(contains(script, "(" + number(0.25 * std::numbers::sqrt2) + "):3 with circles"));
-}
-
-TEST(Profile, ValuesAreInTheUnitOfTheColourBar) {
-  const Frame frame = three_particles();
-  EXPECT_DOUBLE_EQ(colour_value(frame, 1, Colour::speed), 1.0);
-  EXPECT_DOUBLE_EQ(colour_value(frame, 1, Colour::displacement), 5.0);
-  EXPECT_DOUBLE_EQ(colour_value(frame, 2, Colour::pressure), 25.0);
-  EXPECT_NEAR(colour_value(frame, 2, Colour::friction_angle), 30.0, 1e-12);
 }
 
 TEST(Profile, TheFrontIsTheFarthestSoilParticleFromTheLeftBoundary) {
@@ -69,17 +50,6 @@ TEST(Profile, OneColourScaleForAllSnapshotsOfAQuantity) {
   const std::size_t first = script.find("set cbrange [0:16]");
   ASSERT_NE(first, std::string::npos);
   EXPECT_NE(script.find("set cbrange [0:16]", first + 1), std::string::npos);
-}
-
-TEST(Profile, RangesAreRoundAndNeverEmpty) {
-  const ColourRange speed = rounded({0.0, 3.3});
-  EXPECT_DOUBLE_EQ(speed.lo, 0.0);
-  EXPECT_DOUBLE_EQ(speed.hi, 17 * 0.2);
-  const ColourRange uniform = rounded({25.0, 25.0});
-  EXPECT_LT(uniform.lo, 25.0);
-  EXPECT_GT(uniform.hi, 25.0);
-  const ColourRange rest = rounded({0.0, 0.0});
-  EXPECT_LT(rest.lo, rest.hi);
 }
 
 TEST(Profile, ViewHoldsTheSoilButNotWhatFellOffTheEnd) {
