@@ -147,6 +147,14 @@ void print_summary(const RunResult& r, const RunIdentity& identity) {
               r.digest.c_str());
 }
 
+/// The run itself is done; figures that cannot be drawn are no reason to fail.
+void draw_figures(const fs::path& directory) try {
+  plot_run(directory);
+  std::cerr << "figures: " << (directory / "figures").string() << "\n";
+} catch (const IoError& e) {
+  std::cerr << "no figures: " << e.what() << "\n";
+}
+
 Exit run(const RunOptions& options) {
   if (options.study_worker && !die_with_parent()) return Exit::interrupted;
   const auto started = Clock::now();
@@ -227,8 +235,7 @@ Exit run(const RunOptions& options) {
   else if (!options.study_worker) print_summary(result, identity);
   if (result.penetrated > 0 && !options.study_worker)
     std::cerr << "warning: " << result.penetrated << " particles passed through a wall: do not trust this run; try a smaller time step or more wall layers\n";
-  if (options.figures)
-    for (const fs::path& figure : plot_run(out.path())) std::cerr << "figure " << figure.string() << "\n";
+  if (options.figures) draw_figures(out.path());
   return Exit::ok;
 }
 
