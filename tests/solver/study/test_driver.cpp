@@ -261,7 +261,7 @@ TEST(Driver, StopsEarlyAtTheSameRealizationWhateverTheWorkers) {
 
 TEST(Driver, AskedToStopItCheckpointsAndGoesOn) {
   Study s(12);
-  s.milliseconds = 40;
+  s.milliseconds = 300;  // longer than the pauses between two reports
   int asked = 0;
   s.options.interrupts = [&] { return asked; };
   s.options.report = [&](const Progress& p) { asked = p.done >= 3 ? 1 : 0; };
