@@ -5,7 +5,7 @@ set -euo pipefail
 
 build=(cmake ninja-build g++ pkg-config libeigen3-dev libhdf5-dev libboost-dev nlohmann-json3-dev libcli11-dev libspdlog-dev
        libhwy-dev librandom123-dev gnuplot-nox fonts-dejavu-core)
-test=(libgtest-dev libvalijson-dev python3-venv python3-pip)
+test=(libgtest-dev libvalijson-dev python3-venv ca-certificates)
 tsan=(clang-16 libomp-16-dev)
 
 wanted=()
