@@ -3,10 +3,10 @@
 # Needs root or sudo only if something is missing.
 set -euo pipefail
 
-build=(cmake ninja-build g++ pkg-config libeigen3-dev libhdf5-dev libboost-dev nlohmann-json3-dev libcli11-dev libspdlog-dev
-       libhwy-dev librandom123-dev gnuplot-nox fonts-dejavu-core)
+build=(cmake ninja-build g++ pkg-config libeigen3-dev libhdf5-dev libboost-dev nlohmann-json3-dev libcli11-dev libhwy-dev
+       librandom123-dev gnuplot-nox fonts-dejavu-core)
 test=(libgtest-dev libvalijson-dev python3-venv ca-certificates)
-tsan=(clang-16 libomp-16-dev)
+tsan=(clang-16 libclang-rt-16-dev libomp-16-dev)
 
 wanted=()
 for group in "${@:-build}"; do

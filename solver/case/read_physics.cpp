@@ -21,6 +21,7 @@ constexpr Names<DensityFilter> filters[] = {
     {"shepard", DensityFilter::shepard}, {"delta_sph", DensityFilter::delta_sph}, {"none", DensityFilter::none}};
 constexpr Names<InitialPressure> initial_pressures[] = {{"hydrostatic", InitialPressure::hydrostatic},
                                                         {"stress_free", InitialPressure::stress_free}};
+constexpr Names<Precision> precisions[] = {{"single", Precision::single}, {"double", Precision::full}};
 constexpr Names<Integrator> integrators[] = {{"rk2", Integrator::rk2}, {"leapfrog", Integrator::leapfrog}};
 constexpr Names<WallContact> contacts[] = {{"always", WallContact::always}, {"approaching", WallContact::approaching}};
 constexpr Names<WallSlip> slips[] = {
@@ -106,6 +107,7 @@ Numerics read_numerics(ObjectReader in, Json& resolved) {
   n.tension_cutoff = in.flag("tension_cutoff", n.tension_cutoff);
   n.initial_pressure = in.choice("initial_pressure", initial_pressures, n.initial_pressure);
   n.integrator = in.choice("integrator", integrators, n.integrator);
+  n.precision = in.choice("precision", precisions, n.precision);
   n.cfl = in.number("cfl", {"", 0.0, 1.0, true}, n.cfl);
   resolved = in.finish();
   return n;

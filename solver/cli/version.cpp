@@ -1,20 +1,13 @@
 #include "cli/version.hpp"
 
-#include <hwy/highway.h>
-#include <hwy/targets.h>
-
-#include <bit>
+#include "sph/pair_loops.hpp"
 
 namespace talus::cli {
 
 std::string version() { return TALUS_VERSION; }
 
 std::string version_text() {
-  // The best target is the lowest bit that the processor supports.
-  const auto supported = hwy::SupportedTargets();
-  const auto best = supported & -supported;
-  return "talus " + version() + "\ncompiler: " + TALUS_COMPILER + "\nprocessor: " + hwy::TargetName(best) +
-         "\npair loops: compiled for " + hwy::TargetName(HWY_STATIC_TARGET);
+  return "talus " + version() + "\ncompiler: " + TALUS_COMPILER + "\npair loops: " + pair_loops_target() + " on this processor, chosen at run time";
 }
 
 }  // namespace talus::cli

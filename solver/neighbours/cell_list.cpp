@@ -12,23 +12,24 @@ constexpr std::int64_t max_cells = 1 << 22, max_rows = 1 << 11;
 
 void CellList::build(std::span<const double> x, std::span<const double> y, double reach) {
   const std::size_t n = x.size();
-  inverse_cell_ = 2.0 / reach;
+  inverse_reach_ = 1.0 / reach;
   order_.resize(n);
   cell_of_.resize(n);
   if (n == 0) {
+    box_ = {};
     columns_ = rows_ = 1;
     starts_.assign(2, 0);
     return;
   }
   const auto [x_lo, x_hi] = std::minmax_element(x.begin(), x.end());
   const auto [y_lo, y_hi] = std::minmax_element(y.begin(), y.end());
-  lo_ = {*x_lo, *y_lo};
-  const auto cells = [&](double extent, std::int64_t most) {
-    const double c = std::floor(extent * inverse_cell_) + 1.0;
+  box_ = {{*x_lo, *y_lo}, {*x_hi, *y_hi}};
+  const auto cells = [&](double reaches, std::int64_t most) {
+    const double c = std::floor(reaches) + 1.0;
     return c < static_cast<double>(most) ? static_cast<std::int64_t>(c) : most;
   };
-  rows_ = cells(*y_hi - *y_lo, max_rows);
-  columns_ = cells(*x_hi - *x_lo, max_cells / rows_);
+  rows_ = cells(box_.height() * inverse_reach_, max_rows);
+  columns_ = cells(box_.width() * across * inverse_reach_, max_cells / rows_);
   starts_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
   for (std::size_t i = 0; i < n; ++i) {
     cell_of_[i] = static_cast<std::uint32_t>(row(y[i]) * columns_ + column(x[i]));

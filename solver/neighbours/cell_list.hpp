@@ -2,6 +2,7 @@
 // Linked-list cells (Hockney & Eastwood 1988) over points stored in cell order, so that the candidates around a place are a
 // few contiguous index ranges.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,9 +11,16 @@
 
 namespace talus {
 
-/// Cells of half a reach: a search visits 5 rows of 5 cells, each row one contiguous range.
+/// Cells a reach high and a quarter of it wide: a search visits three rows, each one contiguous range of places in which the
+/// points stand almost in order of x. Long ranges suit vectors, narrow cells keep them from carrying much that is too far.
 class CellList {
  public:
+  /// Ranges [begin, end) of places to search, bottom row first.
+  struct Ranges {
+    std::array<std::uint32_t, 3> begin, end;
+    std::size_t count = 0;
+  };
+
   /// Sorts points into cells and remembers the order.
   /// @param x,y    coordinates [m]
   /// @param reach  largest distance that will be searched [m], > 0
@@ -22,29 +30,43 @@ class CellList {
   /// order()[k] = index before sorting of the point that must stand at place k. Apply it before searching.
   std::span<const std::uint32_t> order() const { return order_; }
 
-  /// Calls visit(begin, end) for each contiguous range of places that may lie within `reach` of `point`, bottom row first.
-  template <class Visit>
-  void for_ranges(Vec2 point, Visit&& visit) const {
+  /// The ranges of places that may lie within `reach` of `point`.
+  Ranges ranges(Vec2 point) const {
     const std::int64_t cx = column(point.x), cy = row(point.y);
-    const std::int64_t x0 = cx > 2 ? cx - 2 : 0, x1 = cx + 2 < columns_ ? cx + 2 : columns_ - 1;
-    const std::int64_t y0 = cy > 2 ? cy - 2 : 0, y1 = cy + 2 < rows_ ? cy + 2 : rows_ - 1;
+    const std::int64_t x0 = cx > across ? cx - across : 0, x1 = cx + across < columns_ ? cx + across : columns_ - 1;
+    const std::int64_t y0 = cy > 1 ? cy - 1 : 0, y1 = cy + 1 < rows_ ? cy + 1 : rows_ - 1;
+    Ranges found;
     for (std::int64_t r = y0; r <= y1; ++r) {
       const std::uint32_t begin = starts_[static_cast<std::size_t>(r * columns_ + x0)];
       const std::uint32_t end = starts_[static_cast<std::size_t>(r * columns_ + x1 + 1)];
-      if (begin != end) visit(begin, end);
+      found.begin[found.count] = begin, found.end[found.count] = end;
+      found.count += begin != end;
     }
+    return found;
   }
 
+  /// Calls visit(begin, end) for each of them.
+  template <class Visit>
+  void for_ranges(Vec2 point, Visit&& visit) const {
+    const Ranges found = ranges(point);
+    for (std::size_t r = 0; r < found.count; ++r) visit(found.begin[r], found.end[r]);
+  }
+
+  /// Smallest box around the points of the last build [m].
+  Box box() const { return box_; }
+
  private:
+  static constexpr std::int64_t across = 4;  ///< cells to a reach along x
+
   // Clamped to the grid: points outside it fall into the border cells, which keeps every search right.
-  std::int64_t column(double x) const { return clamp((x - lo_.x) * inverse_cell_, columns_); }
-  std::int64_t row(double y) const { return clamp((y - lo_.y) * inverse_cell_, rows_); }
+  std::int64_t column(double x) const { return clamp((x - box_.lo.x) * across * inverse_reach_, columns_); }
+  std::int64_t row(double y) const { return clamp((y - box_.lo.y) * inverse_reach_, rows_); }
   static std::int64_t clamp(double c, std::int64_t n) {
     return c > 0.0 ? (c < static_cast<double>(n) ? static_cast<std::int64_t>(c) : n - 1) : 0;
   }
 
-  Vec2 lo_;
-  double inverse_cell_ = 1.0;
+  Box box_;
+  double inverse_reach_ = 1.0;
   std::int64_t columns_ = 1, rows_ = 1;
   std::vector<std::uint32_t> starts_ = {0, 0};  ///< first place of each cell, row by row; one more at the end
   std::vector<std::uint32_t> order_, cell_of_;

@@ -24,6 +24,7 @@ struct Soil {
   std::vector<double> gamma_dot;    ///< shear rate of the last evaluation [1/s]
   std::vector<double> p;            ///< pressure of the last evaluation [Pa]
   std::vector<double> sxx, syy, sxy;  ///< Cauchy stress of the last evaluation [Pa]
+  std::vector<double> x_sorted, y_sorted;  ///< position at the last sort [m]
   std::vector<std::int32_t> material;
   std::vector<std::int32_t> id;     ///< identity, 0..size()-1
   std::size_t n_active = 0;
@@ -35,12 +36,23 @@ struct Soil {
   Sym2 stress(std::size_t i) const { return {sxx[i], syy[i], sxy[i]}; }
 };
 
-/// Calls f(name, array) for every array of doubles of the soil: the one list of fields for sorting, resizing and checkpoints.
+/// The one list of the soil's arrays of doubles, in three parts; each calls f(name, array).
+/// State: what a particle is.
+template <class S, class F>
+void for_each_state(S& s, F&& f) {
+  f("x", s.x), f("y", s.y), f("vx", s.vx), f("vy", s.vy), f("rho", s.rho), f("txx", s.txx), f("tyy", s.tyy), f("txy", s.txy);
+  f("m", s.m), f("tan_phi", s.tan_phi);
+}
+/// Rates of the last evaluation: the leapfrog predicts with them.
+template <class S, class F>
+void for_each_rate(S& s, F&& f) {
+  f("ax", s.ax), f("ay", s.ay), f("drho", s.drho), f("dtxx", s.dtxx), f("dtyy", s.dtyy), f("dtxy", s.dtxy);
+}
+/// All of them, with what an evaluation derives for pictures and walls: for resizing and checkpoints.
 template <class S, class F>
 void for_each_real(S& s, F&& f) {
-  f("x", s.x), f("y", s.y), f("vx", s.vx), f("vy", s.vy), f("rho", s.rho), f("txx", s.txx), f("tyy", s.tyy), f("txy", s.txy);
-  f("m", s.m), f("tan_phi", s.tan_phi), f("ax", s.ax), f("ay", s.ay), f("drho", s.drho), f("dtxx", s.dtxx), f("dtyy", s.dtyy);
-  f("dtxy", s.dtxy), f("gamma_dot", s.gamma_dot), f("p", s.p), f("sxx", s.sxx), f("syy", s.syy), f("sxy", s.sxy);
+  for_each_state(s, f), for_each_rate(s, f);
+  f("gamma_dot", s.gamma_dot), f("p", s.p), f("sxx", s.sxx), f("syy", s.syy), f("sxy", s.sxy), f("x_sorted", s.x_sorted), f("y_sorted", s.y_sorted);
 }
 
 /// Wall particles; fixed, sorted by cell once.

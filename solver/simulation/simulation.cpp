@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "math/error.hpp"
@@ -10,6 +11,7 @@
 namespace talus {
 namespace {
 
+constexpr double skin = 0.1;                        ///< way that a particle may go before all are sorted again [h]
 constexpr std::int64_t penetration_interval = 50;  ///< steps between two looks behind the walls
 
 FlowConstants flow_constants(const Model& model) {
@@ -119,13 +121,23 @@ double Simulation::choose_step(double until) const {
   return rest < 1.001 * dt ? rest : dt;
 }
 
-void Simulation::sort(double reach) {
+/// Cells over where the particles stood when they were sorted, wide enough for what they may have moved since.
+void Simulation::build_cells() {
   const std::size_t n = soil_.n_active;
-  soil_cells_.build(std::span(soil_.x).first(n), std::span(soil_.y).first(n), reach);
+  soil_cells_.build(std::span(soil_.x_sorted).first(n), std::span(soil_.y_sorted).first(n), (2.0 + skin) * rhs_.constants().h);
+}
+
+void Simulation::sort() {
+  soil_.x_sorted = soil_.x, soil_.y_sorted = soil_.y;
+  build_cells();
   const auto order = soil_cells_.order();
-  for_each_real(soil_, [&](const char*, auto& array) { permute(array, order, scratch_); });
+  const auto apply = [&](const char*, auto& array) { permute(array, order, scratch_); };
+  for_each_state(soil_, apply);
+  if (model_.numerics.integrator == Integrator::leapfrog) for_each_rate(soil_, apply);  // else the next evaluation writes them
+  apply("", soil_.x_sorted), apply("", soil_.y_sorted);
   permute(soil_.material, order, scratch_int_);
   permute(soil_.id, order, scratch_int_);
+  moved_ = 0.0;
 }
 
 /// Soil that left through an open end stops taking part: it is swapped behind the active ones and keeps its last state.
@@ -142,14 +154,15 @@ void Simulation::retire_departed() {
     for_each_real(soil_, [&](const char*, auto& array) { std::swap(array[i], array[last]); });
     std::swap(soil_.material[i], soil_.material[last]);
     std::swap(soil_.id[i], soil_.id[last]);
+    moved_ = -1.0;
   }
 }
 
 void Simulation::step(double until) {
   const double dt = choose_step(until);
   const Numerics& numerics = model_.numerics;
-  // Neighbours are sought from where a particle is now to where the others were sorted: half a step apart at most.
-  sort(2.0 * rhs_.constants().h + 0.5 * dt * (max_speed_ + dt * max_acceleration_));
+  // Neighbours are sought from where a particle is now to where the others stood when they were sorted.
+  if (moved_ < 0.0 || moved_ + 0.5 * dt * max_speed_ > skin * rhs_.constants().h) sort();
   if (numerics.density_filter == DensityFilter::shepard && steps_ > 0 && steps_ % numerics.filter_interval == 0)
     rhs_.filter_density(soil_, walls_, soil_cells_, wall_cells_);
   const Evaluate evaluate = [&](Soil& soil) {
@@ -169,26 +182,27 @@ void Simulation::step(double until) {
 
 /// Finite and plausible? Then the extremes for the next step and the rest rule are brought up to date.
 void Simulation::check() {
-  double v2 = 0.0, a2 = 0.0, m_v2 = 0.0, mass = 0.0;
-  std::int32_t bad = -1;
+  constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
+  double v2 = 0.0, a2 = 0.0, d2 = 0.0;
+  std::int32_t bad = none;
+#pragma omp parallel for schedule(static) reduction(max : v2, a2, d2) reduction(min : bad)
   for (std::size_t i = 0; i < soil_.n_active; ++i) {
     const double v2_i = norm2(soil_.velocity(i)), a2_i = soil_.ax[i] * soil_.ax[i] + soil_.ay[i] * soil_.ay[i];
-    const bool sound = std::isfinite(soil_.x[i] + soil_.y[i] + v2_i + a2_i + soil_.rho[i]) && soil_.rho[i] > 0.0 &&
-                       v2_i < 100.0 * bounds_.c * bounds_.c;
-    if (!sound && (bad < 0 || soil_.id[i] < bad)) bad = soil_.id[i];
-    v2 = std::max(v2, v2_i), a2 = std::max(a2, a2_i);
-    m_v2 += soil_.m[i] * v2_i, mass += soil_.m[i];
+    const double d2_i = norm2(soil_.position(i) - Vec2{soil_.x_sorted[i], soil_.y_sorted[i]});
+    const bool sound = std::isfinite(d2_i + v2_i + a2_i + soil_.rho[i]) && soil_.rho[i] > 0.0 && v2_i < 100.0 * bounds_.c * bounds_.c;
+    if (!sound) bad = std::min(bad, soil_.id[i]);
+    v2 = std::max(v2, v2_i), a2 = std::max(a2, a2_i), d2 = std::max(d2, d2_i);
   }
-  if (bad >= 0) {
+  if (bad != none) {
     const Vec2 x = origin_[static_cast<std::size_t>(bad)];
     throw DivergedError("the run diverged at step " + std::to_string(steps_) + ", time " + std::to_string(time_) + " s: particle " +
                             std::to_string(bad) + ", which started at (" + std::to_string(x.x) + ", " + std::to_string(x.y) +
                             ") m, is no longer finite or faster than 10 times sound; try a smaller time step",
                         steps_, time_, bad);
   }
-  max_speed_ = std::sqrt(v2), max_acceleration_ = std::sqrt(a2);
+  max_speed_ = std::sqrt(v2), max_acceleration_ = std::sqrt(a2), moved_ = std::sqrt(d2);
   peak_speed_ = std::max(peak_speed_, max_speed_);
-  const bool slow = model_.time.stop_at_rest && m_v2 < mass * model_.time.stop_at_rest->speed * model_.time.stop_at_rest->speed;
+  const bool slow = model_.time.stop_at_rest && rms_speed(soil_) < model_.time.stop_at_rest->speed;
   if (!slow) slow_since_ = -1.0;
   else if (slow_since_ < 0.0) slow_since_ = time_;
 }
@@ -249,7 +263,7 @@ State Simulation::state() const {
   State s;
   for_each_real(soil_, [&](const char* name, const auto& array) { s.reals[name] = array; });
   for_each_wall_real(walls_, [&](const char* name, const auto& array) { s.reals[name] = array; });
-  s.reals["scalars"] = {time_, peak_speed_, max_speed_, max_acceleration_, slow_since_};
+  s.reals["scalars"] = {time_, peak_speed_, max_speed_, max_acceleration_, slow_since_, moved_};
   s.integers["material"].assign(soil_.material.begin(), soil_.material.end());
   s.integers["id"].assign(soil_.id.begin(), soil_.id.end());
   s.integers["penetrated"] = penetrated_;
@@ -265,8 +279,9 @@ void Simulation::restore(const State& state) {
   };
   for_each_real(soil_, [&](const char* name, auto& array) { array = take(state.reals, name, array.size()); });
   for_each_wall_real(walls_, [&](const char* name, auto& array) { array = take(state.reals, name, array.size()); });
-  const auto& scalars = take(state.reals, "scalars", 5);
+  const auto& scalars = take(state.reals, "scalars", 6);
   time_ = scalars[0], peak_speed_ = scalars[1], max_speed_ = scalars[2], max_acceleration_ = scalars[3], slow_since_ = scalars[4];
+  moved_ = scalars[5];
   const auto& material = take(state.integers, "material", soil_.size());
   const auto& id = take(state.integers, "id", soil_.size());
   for (std::size_t i = 0; i < soil_.size(); ++i) {
@@ -278,6 +293,7 @@ void Simulation::restore(const State& state) {
   penetrated_ = take(state.integers, "penetrated", penetrated_.size());
   const auto& counters = take(state.integers, "counters", 3);
   soil_.n_active = static_cast<std::size_t>(counters[0]), steps_ = counters[1], evaluations_ = counters[2];
+  build_cells();
 }
 
 }  // namespace talus

@@ -65,7 +65,8 @@ class Simulation {
 
  private:
   double choose_step(double until) const;
-  void sort(double reach);
+  void sort();
+  void build_cells();
   void retire_departed();
   void check();
   void count_penetrations();
@@ -83,6 +84,7 @@ class Simulation {
   std::vector<std::int32_t> scratch_int_;
   StepBounds bounds_;
   double time_ = 0.0, peak_speed_ = 0.0, max_speed_ = 0.0, max_acceleration_ = 0.0;
+  double moved_ = -1.0;                    ///< largest displacement since the last sort [m]; < 0: sort before the next step
   double slow_since_ = -1.0;               ///< time since when the slide has been slower than the rest speed; < 0: it is not
   double height_ = 0.0;
   std::int64_t steps_ = 0, evaluations_ = 0;

@@ -13,6 +13,7 @@ enum class KernelShape { cubic_spline, wendland_c2 };
 enum class DensityFilter { delta_sph, shepard, none };
 enum class Integrator { rk2, leapfrog };
 enum class Continuity { volume, mass };                 ///< rho_i sum V_j | sum m_j, [Z20] Eq. 1; equal where density is uniform
+enum class Precision { single, full };                   ///< of the soil-soil pair sums; the state is double in both
 enum class InitialPressure { hydrostatic, stress_free };
 
 /// How the soil yields.
@@ -40,6 +41,7 @@ struct Numerics {
   bool tension_cutoff = true;            ///< negative pressure is cut to zero
   InitialPressure initial_pressure = InitialPressure::hydrostatic;
   Integrator integrator = Integrator::rk2;
+  Precision precision = Precision::single;
   double cfl = 0.4;                      ///< Courant number [-], in (0, 1]
   bool operator==(const Numerics&) const = default;
 };

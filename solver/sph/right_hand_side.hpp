@@ -11,6 +11,8 @@
 #include "sph/artificial_viscosity.hpp"
 #include "sph/kernel.hpp"
 #include "sph/numerics.hpp"
+#include "sph/packed_soil.hpp"
+#include "sph/pair_loops.hpp"
 
 namespace talus {
 
@@ -38,15 +40,16 @@ struct FlowConstants {
 std::vector<PointLaw> point_laws(const std::vector<Material>& materials, const Rheology& rheology, double c_s);
 
 /// Evaluates rates of change. Gather loops only: every particle sums its own neighbours in the order of the cells, so the
-/// result has the same bits for any number of threads.
+/// result has the same bits for any number of threads. The soil-soil sums come in two precisions; the double-precision loops are
+/// the oracle of the vectorised ones. Walls, the law of a point and all state are double in both.
 class RightHandSide {
  public:
-  explicit RightHandSide(FlowConstants constants) : k_(std::move(constants)) {}
+  explicit RightHandSide(FlowConstants constants);
 
   /// Fills ax, ay, drho, dt** and the derived p, s**, gamma_dot of the active soil, and the extrapolated stress of the walls.
   /// With the elastic law it first returns t** to the yield surface.
   /// Both cell lists must cover 2h around every particle's present position.
-  void evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  void evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells);
 
   /// One pass of the Shepard filter over the densities of the active soil.
   void filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
@@ -54,19 +57,35 @@ class RightHandSide {
   const FlowConstants& constants() const { return k_; }
 
  private:
+  /// What the first pass knows of a particle before its law.
+  struct Rates {
+    Mat2 L;
+    double drho, wall_distance;
+  };
+
   template <class Kernel>
-  void evaluate_with(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  void evaluate_plain(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
   template <class Kernel>
-  void gradients_and_stress(const Kernel& kernel, Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  void evaluate_packed(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells);
   template <class Kernel>
-  void wall_stress(const Kernel& kernel, const Soil& soil, WallParticles& walls, const CellList& soil_cells) const;
+  Rates soil_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const CellList& soil_cells) const;
   template <class Kernel>
-  void accelerations(const Kernel& kernel, Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  void add_wall_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls, const CellList& wall_cells, Rates& rates) const;
+  template <class Kernel>
+  void wall_stress(const Kernel& kernel, const Soil& soil, WallParticles& walls, std::size_t w, const CellList& soil_cells) const;
+  template <class Kernel>
+  Vec2 soil_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i, const CellList& soil_cells) const;
+  template <class Kernel>
+  Vec2 wall_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls, const CellList& wall_cells) const;
   template <class Kernel>
   void shepard(const Kernel& kernel, Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
-  void apply_law(Soil& soil, std::size_t i, const Mat2& L, double tan_phi) const;
+  void apply_law(Soil& soil, std::size_t i, const Rates& rates) const;
 
   FlowConstants k_;
+  double tan_phi_wall_;
+  std::vector<double> rho0_;  ///< by material [kg/m3]
+  PackedSoil packed_;
+  GradientSums sums_;
 };
 
 }  // namespace talus

@@ -57,6 +57,7 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
                           {"tension_cutoff", false},
                           {"initial_pressure", "stress_free"},
                           {"integrator", "leapfrog"},
+                          {"precision", "double"},
                           {"cfl", 0.13}};
   document["walls"] = {{"contact", "approaching"}, {"slip", "free_slip"}, {"max_velocity_ratio", 14}, {"layers", 15}};
   document["time"] = {{"end_s", 16}, {"max_step_s", 17}, {"stop_at_rest", {{"speed_m_s", 18}, {"hold_s", 19}}}};
@@ -66,7 +67,7 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
   EXPECT_EQ(m.rheology, (Rheology{ShearRate::paper, Yield::regularized, 6, 7.0}));
   EXPECT_EQ(m.numerics,
             (Numerics{KernelShape::wendland_c2, 1.25, 8.0, 9, 10, Continuity::mass, DensityFilter::delta_sph, 11, 0.12,
-                      false, InitialPressure::stress_free, Integrator::leapfrog, 0.13}));
+                      false, InitialPressure::stress_free, Integrator::leapfrog, Precision::full, 0.13}));
   EXPECT_EQ(m.walls, (Walls{WallContact::approaching, WallSlip::free_slip, 0.0, 14, 15}));
   EXPECT_EQ(m.time, (TimeControl{16, {}, 17.0, {}, StopAtRest{18, 19}}));
 }
