@@ -96,12 +96,14 @@ HWY_ATTR void momentum_loop(const PackedSoil& s, const CellList& cells, const Pa
     V sum_x = zero, sum_y = zero;
     for_vectors(s, cells, {px[i], py[i]}, s.x[i], s.y[i], per_h, [&](std::size_t k, V x, V y, V u2, M near) HWY_ATTR {
       const V VF = hn::IfThenElseZero(near, hn::Mul(hn::LoadU(d, s.V.data() + k), kernel_F<Wendland>(u2)));
-      // mu/h... = v.r/(r^2 + 0.01 h^2) with r in units of h, so mu = (v.x)/(u2 + 0.01); approaching pairs only
+      // mu = v.r/(r^2 + 0.01 h^2) with r in units of h; approaching pairs only.
+      // rho_i rho_j Pi = rho_i rho_j (-alpha c mu + beta mu^2) / ((rho_i + rho_j)/2); both quotients share one division.
       const V v_dot_r = hn::MulAdd(hn::Sub(vx, hn::LoadU(d, s.vx.data() + k)), x, hn::Mul(hn::Sub(vy, hn::LoadU(d, s.vy.data() + k)), y));
-      const V mu = hn::Div(hn::Min(v_dot_r, zero), hn::Add(u2, hn::Set(d, 0.01f)));
       const V rho_j = hn::LoadU(d, s.rho.data() + k);
-      // rho_i rho_j Pi = rho_i rho_j (-alpha c mu + beta mu^2) / ((rho_i + rho_j)/2)
-      const V harmonic = hn::Div(hn::Mul(hn::Mul(hn::Set(d, 2.0f), rho), rho_j), hn::Add(rho, rho_j));
+      const V sum_rho = hn::Add(rho, rho_j), distance2 = hn::Add(u2, hn::Set(d, 0.01f));
+      const V inverse = hn::Div(hn::Set(d, 1.0f), hn::Mul(sum_rho, distance2));
+      const V mu = hn::Mul(hn::Min(v_dot_r, zero), hn::Mul(sum_rho, inverse));
+      const V harmonic = hn::Mul(hn::Mul(hn::Add(rho, rho), rho_j), hn::Mul(distance2, inverse));
       const V viscous = hn::Mul(harmonic, hn::Mul(mu, hn::MulSub(beta, mu, alpha_c)));
       const V xx = hn::Sub(hn::Add(sxx, hn::LoadU(d, s.sxx.data() + k)), viscous);
       const V yy = hn::Sub(hn::Add(syy, hn::LoadU(d, s.syy.data() + k)), viscous);
