@@ -12,6 +12,7 @@ namespace talus {
 namespace {
 
 constexpr double skin = 0.1;                        ///< way that a particle may go before all are sorted again [h]
+constexpr std::int64_t rest_interval = 20;          ///< steps between two looks at the rest rule
 constexpr std::int64_t penetration_interval = 50;  ///< steps between two looks behind the walls
 
 FlowConstants flow_constants(const Model& model) {
@@ -202,9 +203,10 @@ void Simulation::check() {
   }
   max_speed_ = std::sqrt(v2), max_acceleration_ = std::sqrt(a2), moved_ = std::sqrt(d2);
   peak_speed_ = std::max(peak_speed_, max_speed_);
-  const bool slow = model_.time.stop_at_rest && rms_speed(soil_) < model_.time.stop_at_rest->speed;
-  if (!slow) slow_since_ = -1.0;
-  else if (slow_since_ < 0.0) slow_since_ = time_;
+  if (model_.time.stop_at_rest && steps_ % rest_interval == 0) {
+    if (rms_speed(soil_) >= model_.time.stop_at_rest->speed) slow_since_ = -1.0;
+    else if (slow_since_ < 0.0) slow_since_ = time_;
+  }
 }
 
 bool Simulation::rests() const { return slow_since_ >= 0.0 && time_ - slow_since_ >= model_.time.stop_at_rest->hold; }
