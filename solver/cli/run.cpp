@@ -247,7 +247,8 @@ void add_run(CLI::App& app, Action& action) {
   verb->add_option("case", options->case_file, "case file (JSON)")->required();
   verb->add_option("--out", options->out, "directory for the results; created, or empty")->required();
   verb->add_option("--realization", options->realization, "index of the realization, from 0; without it the median run")->check(CLI::NonNegativeNumber);
-  verb->add_option("--seed", options->seed, "seed of the random field; otherwise the case's, otherwise a new one, which is recorded");
+  verb->add_option("--seed", options->seed, "seed of the random field; otherwise the case's, otherwise a new one, which is recorded")
+      ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));  // what every reader of JSON keeps exact
   verb->add_option("--threads", options->threads, "OpenMP threads; the result does not depend on them")->check(CLI::Range(1, 4096));
   verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")->allow_extra_args(false);
   verb->add_flag("--resume", options->resume, "go on from the checkpoint in --out");

@@ -54,12 +54,6 @@ Box bounding_box(std::span<const SlidePart> slide) {
   return box;
 }
 
-bool inside(std::span<const Vec2> outline, Vec2 point, bool edges_too) {
-  const Polygon polygon = to_polygon(outline);
-  const Point p(point.x, point.y);
-  return edges_too ? bg::covered_by(p, polygon) : bg::within(p, polygon);
-}
-
 double cover(std::span<const Vec2> outline, Vec2 point) {
   const std::vector<double> y = crossings(outline, point.x);
   double length = 0.0;

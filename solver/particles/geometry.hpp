@@ -16,9 +16,6 @@ double area(std::span<const Vec2> outline);
 /// Smallest box around all outlines [m].
 Box bounding_box(std::span<const SlidePart> slide);
 
-/// Is the point inside the outline? Points on the edge count if `edges_too`.
-bool inside(std::span<const Vec2> outline, Vec2 point, bool edges_too);
-
 /// Length of the vertical line above `point` that lies inside the outline [m].
 double cover(std::span<const Vec2> outline, Vec2 point);
 

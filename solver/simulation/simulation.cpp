@@ -294,6 +294,8 @@ void Simulation::restore(const State& state) {
   }
   penetrated_ = take(state.integers, "penetrated", penetrated_.size());
   const auto& counters = take(state.integers, "counters", 3);
+  if (counters[0] < 0 || counters[0] > static_cast<std::int64_t>(soil_.size()))
+    throw IoError("the checkpoint does not belong to this case: more active particles than there are");
   soil_.n_active = static_cast<std::size_t>(counters[0]), steps_ = counters[1], evaluations_ = counters[2];
   build_cells();
 }

@@ -1,8 +1,6 @@
 #pragma once
 // A deterministic run: particles made from a model, stepped to the end, read off as frames, history and result.
 
-#include <functional>
-#include <memory>
 #include <vector>
 
 #include "integrate/integrator.hpp"

@@ -15,13 +15,6 @@ TEST(Geometry, AreaOfATriangleInEitherOrientation) {
   EXPECT_DOUBLE_EQ(area(std::vector<Vec2>{{0, 3}, {4, 0}, {0, 0}}), 0.5 * 4 * 3);
 }
 
-TEST(Geometry, InsideKnowsEdges) {
-  EXPECT_TRUE(inside(triangle, {1, 1}, false));
-  EXPECT_FALSE(inside(triangle, {3, 3}, true));
-  EXPECT_TRUE(inside(triangle, {2, 0}, true));
-  EXPECT_FALSE(inside(triangle, {2, 0}, false));
-}
-
 TEST(Geometry, CoverIsTheSoilAboveAPoint) {
   EXPECT_DOUBLE_EQ(cover(triangle, {1, 0}), 3.0 - 1 * 0.75);
   EXPECT_DOUBLE_EQ(cover(triangle, {1, 1}), 3.0 - 1 * 0.75 - 1);
