@@ -52,6 +52,22 @@ class CellList {
     for (std::size_t r = 0; r < found.count; ++r) visit(found.begin[r], found.end[r]);
   }
 
+  /// Calls visit(begin, end) for the ranges of places that cover `region` [m].
+  template <class Visit>
+  void for_ranges(Box region, Visit&& visit) const {
+    const std::int64_t x0 = column(region.lo.x), x1 = column(region.hi.x), y1 = row(region.hi.y);
+    for (std::int64_t r = row(region.lo.y); r <= y1; ++r) {
+      const std::uint32_t begin = starts_[static_cast<std::size_t>(r * columns_ + x0)];
+      const std::uint32_t end = starts_[static_cast<std::size_t>(r * columns_ + x1 + 1)];
+      if (begin != end) visit(begin, end);
+    }
+  }
+
+  /// Rows of cells; places of one row are contiguous.
+  std::size_t rows() const { return static_cast<std::size_t>(rows_); }
+  /// First place of row r; row_begin(rows()) is the number of points.
+  std::uint32_t row_begin(std::size_t r) const { return starts_[r * static_cast<std::size_t>(columns_)]; }
+
   /// Smallest box around the points of the last build [m].
   Box box() const { return box_; }
 

@@ -139,6 +139,7 @@ void Simulation::sort() {
   permute(soil_.material, order, scratch_int_);
   permute(soil_.id, order, scratch_int_);
   moved_ = 0.0;
+  rhs_.renew(soil_, walls_, soil_cells_, wall_cells_, skin * rhs_.constants().h);
 }
 
 /// Soil that left through an open end stops taking part: it is swapped behind the active ones and keeps its last state.
@@ -298,6 +299,7 @@ void Simulation::restore(const State& state) {
     throw IoError("the checkpoint does not belong to this case: more active particles than there are");
   soil_.n_active = static_cast<std::size_t>(counters[0]), steps_ = counters[1], evaluations_ = counters[2];
   build_cells();
+  rhs_.renew(soil_, walls_, soil_cells_, wall_cells_, skin * rhs_.constants().h);
 }
 
 }  // namespace talus

@@ -1,136 +1,427 @@
 #include "sph/pair_loops.hpp"
 
+#include <algorithm>
+#include <limits>
+#include <numbers>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sph/pair_loops.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sph/lanes-inl.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-// Eight lanes everywhere: the same bits on AVX2 and AVX-512.
-using D = hn::CappedTag<float, 8>;
-using DI = hn::RebindToSigned<D>;
-using V = hn::Vec<D>;
-using M = hn::Mask<D>;
+/// Neighbours are taken some at a time, step by step together, and the separations of the next ones are worked out before
+/// these are summed: the processor looks ahead too little to see from one pair's square root to the next pair's.
+constexpr std::size_t block = ClusterList::block;
+struct Block {
+  V v[block];
+};
 
-/// F = W'(r)/r over sigma/h^2 at squared distance u2 = (r/h)^2 < 4; see sph/kernel.hpp. Both branches, then choose.
-template <bool Wendland>
-HWY_INLINE V kernel_F(V u2) {
-  const D d;
-  const V u = hn::Sqrt(u2);
-  if constexpr (Wendland) {
-    const V w = hn::NegMulAdd(hn::Set(d, 0.5f), u, hn::Set(d, 1.0f));
-    return hn::Mul(hn::Mul(hn::Set(d, -5.0f), w), hn::Mul(w, w));
-  } else {
-    const V inner = hn::MulSub(hn::Set(d, 1.5f), u, hn::Set(d, 2.0f));
-    const V w = hn::Sub(hn::Set(d, 2.0f), u);
-    const V outer = hn::Div(hn::Mul(hn::Mul(hn::Set(d, -0.5f), w), w), u);
-    return hn::IfThenElse(hn::Lt(u, hn::Set(d, 1.0f)), inner, outer);
-  }
-}
-
-/// Calls f(k, x, y, u2, near) for every vector of candidates around particle i; x, y are r_ij in units of h.
-template <class F>
-HWY_INLINE void for_vectors(const PackedSoil& s, const CellList& cells, Vec2 x_i, std::int32_t X_i, std::int32_t Y_i, float per_h, F&& f) {
+/// r_ij in quanta of all particles i of a cluster from a block of particles j: components, squared length, length.
+struct Separations {
+  Block x, y, s, r;
+};
+HWY_INLINE Separations separations(V X, V Y, const float* HWY_RESTRICT groups, const std::uint32_t* j) {
   const D d;
   const DI di;
-  const auto X = hn::Set(di, X_i), Y = hn::Set(di, Y_i);
-  const V scale = hn::Set(d, per_h), support2 = hn::Set(d, 4.0f);
-  const CellList::Ranges ranges = cells.ranges(x_i);
-  for (std::size_t r = 0; r < ranges.count; ++r) {
-    const std::size_t end = ranges.end[r];
-    for (std::size_t k = ranges.begin[r]; k < end; k += hn::Lanes(d)) {
-      const V x = hn::Mul(hn::ConvertTo(d, hn::Sub(X, hn::LoadU(di, s.x.data() + k))), scale);
-      const V y = hn::Mul(hn::ConvertTo(d, hn::Sub(Y, hn::LoadU(di, s.y.data() + k))), scale);
-      const V u2 = hn::MulAdd(x, x, hn::Mul(y, y));
-      M near = hn::Lt(u2, support2);
-      if (end - k < hn::Lanes(d)) near = hn::And(near, hn::FirstN(d, end - k));
-      f(k, x, y, u2, near);
+  Separations r;
+  for (std::size_t b = 0; b < block; ++b) {
+    const float* HWY_RESTRICT group = groups + 4 * std::size_t{j[b]};
+    r.x.v[b] = hn::ConvertTo(d, hn::Sub(hn::BitCast(di, X), hn::BitCast(di, set(group[0]))));
+    r.y.v[b] = hn::ConvertTo(d, hn::Sub(hn::BitCast(di, Y), hn::BitCast(di, set(group[1]))));
+  }
+  for (std::size_t b = 0; b < block; ++b) r.s.v[b] = hn::MulAdd(r.x.v[b], r.x.v[b], hn::Mul(r.y.v[b], r.y.v[b]));
+  for (std::size_t b = 0; b < block; ++b) r.r.v[b] = hn::Sqrt(r.s.v[b]);
+  return r;
+}
+
+/// The kernels as functions of the distance in quanta; see sph/kernel.hpp. Both vanish beyond 2h of themselves, so that no
+/// lane needs a mask.
+struct CubicSplineV {
+  V per_h, inner_slope, h2, outer_scale, edge, two;
+
+  explicit CubicSplineV(double quantum_per_h)
+      : per_h(set(quantum_per_h)),
+        inner_slope(set(1.5 * quantum_per_h)),
+        h2(set(1.0 / (quantum_per_h * quantum_per_h))),
+        outer_scale(set(std::sqrt(0.5 * quantum_per_h))),
+        edge(set(std::sqrt(2.0 / quantum_per_h))),
+        two(set(2.0f)) {}
+
+  /// -F h^2/sigma: 2 - 3/2 u for u < 1, (2 - u)^2/(2u) beyond. At r = 0 the second is infinite and not chosen.
+  HWY_INLINE void minus_F(const Separations& at, Block& F) const {
+    Block w;
+    for (std::size_t b = 0; b < block; ++b) w.v[b] = hn::Max(hn::NegMulAdd(outer_scale, at.r.v[b], edge), hn::Zero(D()));
+    for (std::size_t b = 0; b < block; ++b) {
+      const V outer = hn::Div(hn::Mul(w.v[b], w.v[b]), at.r.v[b]);
+      F.v[b] = hn::IfThenElse(hn::Lt(at.s.v[b], h2), hn::NegMulAdd(inner_slope, at.r.v[b], two), outer);
     }
   }
+  /// W/sigma: 2/3 - u^2 + u^3/2 for u < 1, (2 - u)^3/6 beyond.
+  HWY_INLINE V W(V r) const {
+    const V u = hn::Mul(per_h, r), w = hn::Max(hn::Sub(two, u), hn::Zero(D()));
+    const V inner = hn::MulAdd(hn::Mul(u, u), hn::MulSub(set(0.5f), u, set(1.0f)), set(2.0f / 3.0f));
+    return hn::IfThenElse(hn::Lt(u, set(1.0f)), inner, hn::Mul(hn::Mul(w, w), hn::Mul(w, set(1.0f / 6.0f))));
+  }
+};
+
+struct WendlandC2V {
+  V half_per_h;
+
+  explicit WendlandC2V(double quantum_per_h) : half_per_h(set(0.5 * quantum_per_h)) {}
+
+  HWY_INLINE V rest(V r) const { return hn::Max(hn::NegMulAdd(half_per_h, r, set(1.0f)), hn::Zero(D())); }
+  /// -F h^2/sigma = 5 (1 - u/2)^3.
+  HWY_INLINE void minus_F(const Separations& at, Block& F) const {
+    for (std::size_t b = 0; b < block; ++b) {
+      const V w = rest(at.r.v[b]);
+      F.v[b] = hn::Mul(hn::Mul(set(5.0f), w), hn::Mul(w, w));
+    }
+  }
+  /// W/sigma = (1 - u/2)^4 (2u + 1) = w^4 (5 - 4w).
+  HWY_INLINE V W(V r) const {
+    const V w = rest(r), w2 = hn::Mul(w, w);
+    return hn::Mul(hn::Mul(w2, w2), hn::NegMulAdd(set(4.0f), w, set(5.0f)));
+  }
+};
+
+/// sigma/h^2 of both kernels: see sph/kernel.hpp.
+inline double sigma_h2(const FlowConstants& k) {
+  const double shape = k.numerics.kernel == KernelShape::wendland_c2 ? 7.0 / 4.0 : 15.0 / 7.0, h2 = k.h * k.h;
+  return shape / (std::numbers::pi * h2 * h2);
 }
 
-template <bool Wendland, bool Diffuse, bool OneMaterial>
-HWY_ATTR void gradient_loop(const PackedSoil& s, const CellList& cells, const PairConstants& c, Chunk chunk, const double* px, const double* py,
-                            GradientSums& out) {
+/// The neighbours of cluster c: sources' places [begin, end).
+struct Neighbours {
+  const std::uint32_t *begin, *end;
+};
+HWY_INLINE Neighbours neighbours(const ClusterList& list, std::size_t c) {
+  const ClusterList::Chunk& chunk = list.chunks[c / ClusterList::chunk_size];
+  const std::size_t k = c % ClusterList::chunk_size;
+  return {chunk.places.data() + chunk.at[k], chunk.places.data() + chunk.at[k + 1]};
+}
+
+/// A soil-wall pair: see sph/wall.hpp.
+struct WallPair {
+  V distance;   ///< of the soil particle to the wall line [m]
+  V vx, vy;     ///< v_ij [m/s]
+  V v_dot_r;    ///< [quantum m/s]
+};
+HWY_INLINE WallPair wall_pair(V x, V y, V vx, V vy, const float* HWY_RESTRICT place, float depth, V quantum, V b_max, bool smooth) {
+  WallPair w;
+  const V nx = set(place[2]), ny = set(place[3]), depth_j = set(depth);
+  w.distance = hn::MulSub(quantum, hn::MulAdd(x, nx, hn::Mul(y, ny)), depth_j);
+  const V gap = hn::Max(w.distance, hn::Mul(set(1e-6f), depth_j));
+  const V b = hn::Min(b_max, hn::Add(set(1.0f), hn::Div(depth_j, gap)));
+  if (smooth) {
+    const V normal = hn::Mul(b, hn::MulAdd(vx, nx, hn::Mul(vy, ny)));
+    w.vx = hn::Mul(normal, nx), w.vy = hn::Mul(normal, ny);
+  } else {
+    w.vx = hn::Mul(b, vx), w.vy = hn::Mul(b, vy);
+  }
+  w.v_dot_r = hn::MulAdd(w.vx, x, hn::Mul(w.vy, y));
+  return w;
+}
+
+/// xx^2 + yy^2 + zz^2 + 2 xy^2 of a deviatoric tensor; see math/tensor.hpp.
+HWY_INLINE V double_dot(V xx, V yy, V xy) {
+  const V zz = hn::Add(xx, yy);
+  return hn::MulAdd(xx, xx, hn::MulAdd(yy, yy, hn::MulAdd(zz, zz, hn::Mul(set(2.0f), hn::Mul(xy, xy)))));
+}
+
+/// A constant of the law for each particle of a cluster.
+template <class Get>
+HWY_INLINE V by_material(const FlowConstants& k, const Soil& soil, std::size_t i, std::size_t count, Get&& get) {
+  if (k.laws.size() == 1) return set(get(k.laws[0]));
+  HWY_ALIGN float value[lanes] = {};
+  for (std::size_t l = 0; l < count; ++l) value[l] = static_cast<float>(get(k.laws[static_cast<std::size_t>(soil.material[i + l])]));
+  return hn::Load(D(), value);
+}
+
+/// What the sums of a cluster give to its law.
+struct RatesV {
+  V Lxx, Lxy, Lyx, Lyy;  ///< velocity gradient [1/s]
+  V diffusion;           ///< 2 delta h c_s sum ..., of rho/rho0 [1/s]
+  V wall_distance;       ///< to the nearest acting wall particle's line [m]
+};
+
+/// The law of the particles of one cluster, from i; RightHandSide::apply_law is its oracle.
+HWY_INLINE void apply_law(PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t i, std::size_t count, const RatesV& rates) {
   const D d;
-  const DI di;
-  const auto per_h = static_cast<float>(s.quantum / c.h);
-  const V gx_h = hn::Set(d, static_cast<float>(c.hydrostatic.x * c.h)), gy_h = hn::Set(d, static_cast<float>(c.hydrostatic.y * c.h));
-  const float to_L = c.sigma_h2 * c.h;
-  for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
-    const V vx = hn::Set(d, s.vx[i]), vy = hn::Set(d, s.vy[i]), q = hn::Set(d, s.q[i]);
-    V Lxx = hn::Zero(d), Lxy = Lxx, Lyx = Lxx, Lyy = Lxx, diffusion = Lxx;
-    for_vectors(s, cells, {px[i], py[i]}, s.x[i], s.y[i], per_h, [&](std::size_t k, V x, V y, V u2, M near) HWY_ATTR {
-      const V VF = hn::IfThenElseZero(near, hn::Mul(hn::LoadU(d, s.V.data() + k), kernel_F<Wendland>(u2)));
-      const V wx = hn::Mul(VF, hn::Sub(hn::LoadU(d, s.vx.data() + k), vx)), wy = hn::Mul(VF, hn::Sub(hn::LoadU(d, s.vy.data() + k), vy));
-      Lxx = hn::MulAdd(wx, x, Lxx), Lxy = hn::MulAdd(wx, y, Lxy);
-      Lyx = hn::MulAdd(wy, x, Lyx), Lyy = hn::MulAdd(wy, y, Lyy);
-      if constexpr (Diffuse) {
-        // q_j - q_i - q^H, q^H = g.r_ji/c_s^2 = -g.r_ij/c_s^2
-        V dq = hn::Sub(hn::LoadU(d, s.q.data() + k), q);
-        dq = hn::MulAdd(gx_h, x, hn::MulAdd(gy_h, y, dq));
-        if constexpr (!OneMaterial)
-          dq = hn::IfThenElseZero(hn::RebindMask(d, hn::Eq(hn::LoadU(di, s.material.data() + k), hn::Set(di, s.material[i]))), dq);
-        // The particle itself: q_j - q_i = 0 and r_ij = 0.
-        diffusion = hn::NegMulAdd(VF, dq, diffusion);
+  const auto constant = [&](auto&& get) { return by_material(k, soil, i, count, get); };
+  const V zero = hn::Zero(d), one = set(1.0f), third = set(1.0 / 3.0);
+  const V trace = hn::Add(rates.Lxx, rates.Lyy);
+  const V exx = hn::NegMulAdd(third, trace, rates.Lxx), eyy = hn::NegMulAdd(third, trace, rates.Lyy);
+  const V exy = hn::Mul(set(0.5f), hn::Add(rates.Lxy, rates.Lyx));
+  const bool as_printed = k.rheology.shear_rate == ShearRate::paper;
+  const V gamma_dot = hn::Sqrt(hn::Mul(set(as_printed ? 2.0 / 3.0 : 2.0), double_dot(exx, eyy, exy)));
+  // p = B ((1 + q)^7 - 1), without cancellation.
+  const V q = hn::LoadU(d, f.soil.q.data() + i);
+  V sum = hn::Add(q, set(7.0f));
+  for (const float c : {21.0f, 35.0f, 35.0f, 21.0f, 7.0f}) sum = hn::MulAdd(q, sum, set(c));
+  V p = hn::Mul(hn::Mul(constant([](const PointLaw& law) { return law.eos.B; }), q), sum);
+  if (k.numerics.tension_cutoff) p = hn::Max(p, zero);
+  V tan_phi = load_doubles(soil.tan_phi.data() + i, count);
+  if (k.walls.slip == WallSlip::friction)
+    tan_phi = hn::IfThenElse(hn::Lt(rates.wall_distance, set(k.dx)), hn::Min(tan_phi, set(std::tan(k.walls.phi))), tan_phi);
+  const V tau_y = hn::MulAdd(hn::Max(p, zero), tan_phi, constant([](const PointLaw& law) { return law.c; }));
+  const V eta = constant([](const PointLaw& law) { return law.bingham.eta; });
+  V txx, tyy, txy, viscosity = eta;
+  if (k.rheology.yield == Yield::regularized) {
+    viscosity = hn::Add(eta, hn::Div(tau_y, hn::Max(gamma_dot, set(k.rheology.gamma_dot_min))));
+    txx = tyy = txy = zero;
+  } else {
+    txx = load_doubles(soil.txx.data() + i, count), tyy = load_doubles(soil.tyy.data() + i, count), txy = load_doubles(soil.txy.data() + i, count);
+    const V limit = as_printed ? hn::Mul(set(std::numbers::sqrt3), tau_y) : tau_y;
+    const V size = hn::Sqrt(hn::Mul(set(0.5f), double_dot(txx, tyy, txy)));
+    const M yields = hn::Gt(size, limit);
+    if (!hn::AllFalse(d, yields)) {
+      const V scale = hn::IfThenElse(yields, hn::Div(limit, size), one);
+      HWY_ALIGN float by[lanes];
+      hn::Store(scale, d, by);
+      for (std::size_t l = 0; l < count; ++l) {
+        const double s = static_cast<double>(by[l]);
+        soil.txx[i + l] *= s, soil.tyy[i + l] *= s, soil.txy[i + l] *= s;
       }
-    });
-    out.Lxx[i] = to_L * hn::GetLane(hn::SumOfLanes(d, Lxx)), out.Lxy[i] = to_L * hn::GetLane(hn::SumOfLanes(d, Lxy));
-    out.Lyx[i] = to_L * hn::GetLane(hn::SumOfLanes(d, Lyx)), out.Lyy[i] = to_L * hn::GetLane(hn::SumOfLanes(d, Lyy));
-    if constexpr (Diffuse) out.diffusion[i] = c.sigma_h2 * hn::GetLane(hn::SumOfLanes(d, diffusion));
+      txx = hn::Mul(txx, scale), tyy = hn::Mul(tyy, scale), txy = hn::Mul(txy, scale);
+    }
+    const V two_G = constant([](const PointLaw& law) { return 2.0 * law.G; });
+    const V two_spin = hn::Sub(rates.Lxy, rates.Lyx);  // Jaumann, see material/elastoviscoplastic.hpp
+    const V turn = hn::Mul(two_spin, txy);
+    store_doubles(hn::MulAdd(two_G, exx, turn), soil.dtxx.data() + i, count);
+    store_doubles(hn::MulSub(two_G, eyy, turn), soil.dtyy.data() + i, count);
+    store_doubles(hn::MulAdd(two_G, exy, hn::Mul(hn::Mul(set(0.5f), two_spin), hn::Sub(tyy, txx))), soil.dtxy.data() + i, count);
   }
+  const V two_eta = hn::Add(viscosity, viscosity);
+  const V sxx = hn::Sub(hn::MulAdd(two_eta, exx, txx), p), syy = hn::Sub(hn::MulAdd(two_eta, eyy, tyy), p), sxy = hn::MulAdd(two_eta, exy, txy);
+  store_groups(sxx, syy, sxy, p, f.soil.stress.data() + 4 * i, count);
+  const V rho0 = constant([](const PointLaw& law) { return law.eos.rho0; });
+  // drho = -rho tr(L) + rho0 diffusion
+  store_doubles(hn::Mul(rho0, hn::NegMulAdd(hn::Add(q, one), trace, rates.diffusion)), soil.drho.data() + i, count);
+  store_doubles(gamma_dot, soil.gamma_dot.data() + i, count);
+  store_doubles(p, soil.p.data() + i, count);
+  store_doubles(sxx, soil.sxx.data() + i, count), store_doubles(syy, soil.syy.data() + i, count), store_doubles(sxy, soil.sxy.data() + i, count);
 }
 
-template <bool Wendland>
-HWY_ATTR void momentum_loop(const PackedSoil& s, const CellList& cells, const PairConstants& c, Chunk chunk, const double* px, const double* py,
-                            double* ax, double* ay) {
+template <class Kernel, bool Diffuse, bool OneMaterial>
+HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t chunk) {
   const D d;
-  const auto per_h = static_cast<float>(s.quantum / c.h);
-  const V beta = hn::Set(d, c.beta), alpha_c = hn::Set(d, c.alpha_c), zero = hn::Zero(d);
-  for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
-    const V vx = hn::Set(d, s.vx[i]), vy = hn::Set(d, s.vy[i]), rho = hn::Set(d, s.rho[i]);
-    const V sxx = hn::Set(d, s.sxx[i]), syy = hn::Set(d, s.syy[i]), sxy = hn::Set(d, s.sxy[i]);
-    V sum_x = zero, sum_y = zero;
-    for_vectors(s, cells, {px[i], py[i]}, s.x[i], s.y[i], per_h, [&](std::size_t k, V x, V y, V u2, M near) HWY_ATTR {
-      const V VF = hn::IfThenElseZero(near, hn::Mul(hn::LoadU(d, s.V.data() + k), kernel_F<Wendland>(u2)));
-      // mu = v.r/(r^2 + 0.01 h^2) with r in units of h; approaching pairs only.
-      // rho_i rho_j Pi = rho_i rho_j (-alpha c mu + beta mu^2) / ((rho_i + rho_j)/2); both quotients share one division.
-      const V v_dot_r = hn::MulAdd(hn::Sub(vx, hn::LoadU(d, s.vx.data() + k)), x, hn::Mul(hn::Sub(vy, hn::LoadU(d, s.vy.data() + k)), y));
-      const V rho_j = hn::LoadU(d, s.rho.data() + k);
-      const V sum_rho = hn::Add(rho, rho_j), distance2 = hn::Add(u2, hn::Set(d, 0.01f));
-      const V inverse = hn::Div(hn::Set(d, 1.0f), hn::Mul(sum_rho, distance2));
-      const V mu = hn::Mul(hn::Min(v_dot_r, zero), hn::Mul(sum_rho, inverse));
-      const V harmonic = hn::Mul(hn::Mul(hn::Add(rho, rho), rho_j), hn::Mul(distance2, inverse));
-      const V viscous = hn::Mul(harmonic, hn::Mul(mu, hn::MulSub(beta, mu, alpha_c)));
-      const V xx = hn::Sub(hn::Add(sxx, hn::LoadU(d, s.sxx.data() + k)), viscous);
-      const V yy = hn::Sub(hn::Add(syy, hn::LoadU(d, s.syy.data() + k)), viscous);
-      const V xy = hn::Add(sxy, hn::LoadU(d, s.sxy.data() + k));
-      sum_x = hn::MulAdd(VF, hn::MulAdd(xx, x, hn::Mul(xy, y)), sum_x);
-      sum_y = hn::MulAdd(VF, hn::MulAdd(xy, x, hn::Mul(yy, y)), sum_y);
-    });
-    const double scale = static_cast<double>(c.sigma_h2 * c.h) / static_cast<double>(s.rho[i]);
-    ax[i] = scale * static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sum_x)));
-    ay[i] = scale * static_cast<double>(hn::GetLane(hn::SumOfLanes(d, sum_y)));
+  const Kernel kernel(f.fixed.quantum / k.h);
+  const V quantum = set(f.fixed.quantum), b_max = set(k.walls.b_max), zero = hn::Zero(d);
+  const V volume_w = set(k.dx * k.dx), support2 = set(4.0 * k.h * k.h / (f.fixed.quantum * f.fixed.quantum));
+  const V to_L = set(-sigma_h2(k) * f.fixed.quantum), to_diffusion = set(2.0 * k.numerics.delta * k.h * k.c_s * sigma_h2(k));
+  const bool only_approaching = k.walls.contact == WallContact::approaching, smooth = k.walls.slip == WallSlip::free_slip;
+  const std::size_t begin = chunk * ClusterList::chunk_size, end = std::min(begin + ClusterList::chunk_size, f.soil_clusters.size() - 1);
+  for (std::size_t c = begin; c < end; ++c) {
+    const std::size_t i = f.soil_clusters[c], count = f.soil_clusters[c + 1] - i;
+    V X, Y, vx, vy, volume, q, rho, material;
+    hn::LoadInterleaved4(d, f.soil.motion.data() + 4 * i, X, Y, vx, vy);
+    hn::LoadInterleaved4(d, f.soil.density.data() + 4 * i, volume, q, rho, material);
+    // Sums of V_j (v_j - v_i) r_ij F and V_j (q_j - q_i) F, with -F h^2/sigma for F.
+    V Lxx = zero, Lxy = zero, Lyx = zero, Lyy = zero, diffusion = zero;
+    const Neighbours near = neighbours(f.soil_soil, c);
+    Separations next = separations(X, Y, f.soil.motion.data(), near.begin);
+    for (const std::uint32_t* j = near.begin; j != near.end; j += block) {
+      const Separations r = next;
+      next = separations(X, Y, f.soil.motion.data(), j + block);
+      Block F;
+      kernel.minus_F(r, F);
+      for (std::size_t b = 0; b < block; ++b) {
+        const float* HWY_RESTRICT motion = f.soil.motion.data() + 4 * std::size_t{j[b]};
+        const float* HWY_RESTRICT density = f.soil.density.data() + 4 * std::size_t{j[b]};
+        const V x = r.x.v[b], y = r.y.v[b], VF = hn::Mul(set(density[0]), F.v[b]);
+        const V wx = hn::Mul(VF, hn::Sub(set(motion[2]), vx)), wy = hn::Mul(VF, hn::Sub(set(motion[3]), vy));
+        Lxx = hn::MulAdd(wx, x, Lxx), Lxy = hn::MulAdd(wx, y, Lxy);
+        Lyx = hn::MulAdd(wy, x, Lyx), Lyy = hn::MulAdd(wy, y, Lyy);
+        if constexpr (Diffuse) {
+          V dq = hn::Sub(set(density[1]), q);
+          if constexpr (!OneMaterial) dq = hn::IfThenElseZero(hn::Eq(set(density[3]), material), dq);
+          diffusion = hn::MulAdd(VF, dq, diffusion);
+        }
+      }
+    }
+    V distance = set(std::numeric_limits<float>::infinity());
+    const Neighbours wall = neighbours(f.soil_wall, c);
+    for (const std::uint32_t* j = wall.begin; j != wall.end; j += block) {
+      const Separations r = separations(X, Y, f.walls.place.data(), j);
+      Block F;
+      kernel.minus_F(r, F);
+      for (std::size_t b = 0; b < block; ++b) {
+        const std::size_t group = 4 * std::size_t{j[b]};
+        const V x = r.x.v[b], y = r.y.v[b];
+        const WallPair w = wall_pair(x, y, vx, vy, f.walls.place.data() + group, f.walls.stress[group + 3], quantum, b_max, smooth);
+        M acts = hn::Lt(r.s.v[b], support2);
+        if (only_approaching) acts = hn::And(acts, hn::Lt(w.v_dot_r, zero));
+        const V VF = hn::IfThenElseZero(acts, hn::Mul(volume_w, F.v[b]));
+        const V wx = hn::Mul(VF, w.vx), wy = hn::Mul(VF, w.vy);
+        Lxx = hn::NegMulAdd(wx, x, Lxx), Lxy = hn::NegMulAdd(wx, y, Lxy);
+        Lyx = hn::NegMulAdd(wy, x, Lyx), Lyy = hn::NegMulAdd(wy, y, Lyy);
+        distance = hn::IfThenElse(acts, hn::Min(distance, w.distance), distance);
+      }
+    }
+    apply_law(f, k, soil, i, count,
+              {hn::Mul(to_L, Lxx), hn::Mul(to_L, Lxy), hn::Mul(to_L, Lyx), hn::Mul(to_L, Lyy), hn::Mul(to_diffusion, diffusion), distance});
   }
 }
 
-void gradient_dispatch(const PackedSoil& s, const CellList& cells, const PairConstants& c, Chunk chunk, const double* px, const double* py, GradientSums& out) {
-  const auto with = [&](auto wendland) {
-    constexpr bool W = decltype(wendland)::value;
-    if (!c.diffuse) gradient_loop<W, false, true>(s, cells, c, chunk, px, py, out);
-    else if (c.one_material) gradient_loop<W, true, true>(s, cells, c, chunk, px, py, out);
-    else gradient_loop<W, true, false>(s, cells, c, chunk, px, py, out);
-  };
-  c.wendland ? with(std::true_type{}) : with(std::false_type{});
+template <class Kernel>
+HWY_ATTR void wall_stress_loop(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t chunk) {
+  const D d;
+  const Kernel kernel(f.fixed.quantum / k.h);
+  const V zero = hn::Zero(d), per_c2 = set(1.0 / (k.c_s * k.c_s));
+  const V gx = set(k.g.x * f.fixed.quantum), gy = set(k.g.y * f.fixed.quantum);  // of separations in quanta
+  const std::size_t begin = chunk * ClusterList::chunk_size, end = std::min(begin + ClusterList::chunk_size, f.wall_clusters.size() - 1);
+  for (std::size_t c = begin; c < end; ++c) {
+    const std::size_t i = f.wall_clusters[c], count = f.wall_clusters[c + 1] - i;
+    V X, Y, nx, ny, unused, depth;
+    hn::LoadInterleaved4(d, f.walls.place.data() + 4 * i, X, Y, nx, ny);
+    V weight = zero, p = zero, txx = zero, tyy = zero, txy = zero, compression = zero;
+    const Neighbours near = neighbours(f.wall_soil, c);
+    for (const std::uint32_t* j = near.begin; j != near.end; j += block) {
+      const Separations r = separations(X, Y, f.soil.motion.data(), j);
+      for (std::size_t b = 0; b < block; ++b) {
+        const float* HWY_RESTRICT stress = f.soil.stress.data() + 4 * std::size_t{j[b]};
+        const V W = kernel.W(r.r.v[b]), g_r = hn::MulAdd(gx, r.x.v[b], hn::Mul(gy, r.y.v[b])), p_j = set(stress[3]);
+        weight = hn::Add(weight, W);
+        p = hn::MulAdd(W, hn::MulAdd(set(f.soil.density[4 * std::size_t{j[b]} + 2]), g_r, p_j), p);
+        compression = hn::MulAdd(W, hn::MulAdd(g_r, per_c2, set(f.soil.q[j[b]])), compression);
+        txx = hn::MulAdd(W, hn::Add(set(stress[0]), p_j), txx), tyy = hn::MulAdd(W, hn::Add(set(stress[1]), p_j), tyy);
+        txy = hn::MulAdd(W, set(stress[2]), txy);
+      }
+    }
+    const M covered = hn::Gt(weight, zero);
+    const V inverse = hn::IfThenElseZero(covered, hn::Div(set(1.0f), weight));
+    p = hn::Mul(p, inverse);
+    if (k.numerics.tension_cutoff) p = hn::Max(p, zero);
+    V sxx = hn::MulSub(txx, inverse, p), syy = hn::MulSub(tyy, inverse, p), sxy = hn::Mul(txy, inverse);
+    if (k.walls.slip == WallSlip::free_slip) {  // mirrored(s, n) of math/tensor.hpp, t = (-ny, nx)
+      const V sn_x = hn::MulAdd(sxx, nx, hn::Mul(sxy, ny)), sn_y = hn::MulAdd(sxy, nx, hn::Mul(syy, ny));
+      const V two_tn = hn::Mul(set(2.0f), hn::MulSub(nx, sn_y, hn::Mul(ny, sn_x)));
+      const V xx = hn::Mul(hn::Mul(two_tn, set(2.0f)), hn::Mul(nx, ny));
+      sxx = hn::Add(sxx, xx), syy = hn::Sub(syy, xx);
+      sxy = hn::NegMulAdd(two_tn, hn::MulSub(nx, nx, hn::Mul(ny, ny)), sxy);
+    }
+    V unused_2, unused_3;
+    hn::LoadInterleaved4(d, f.walls.stress.data() + 4 * i, unused, unused_2, unused_3, depth);
+    store_groups(sxx, syy, sxy, depth, f.walls.stress.data() + 4 * i, count);
+    store_doubles(p, walls.p.data() + i, count);
+    store_doubles(sxx, walls.sxx.data() + i, count), store_doubles(syy, walls.syy.data() + i, count), store_doubles(sxy, walls.sxy.data() + i, count);
+    compression = hn::IfThenElseZero(covered, hn::MulAdd(compression, inverse, set(1.0f)));
+    store_doubles(compression, walls.compression.data() + i, count);
+  }
 }
 
-void momentum_dispatch(const PackedSoil& s, const CellList& cells, const PairConstants& c, Chunk chunk, const double* px, const double* py, double* ax,
-                       double* ay) {
-  if (c.wendland) momentum_loop<true>(s, cells, c, chunk, px, py, ax, ay);
-  else momentum_loop<false>(s, cells, c, chunk, px, py, ax, ay);
+/// rho_i rho_j Pi_ij = (rho_i rho_j/rho_mean) mu (beta mu - alpha c_s), mu = h v.r/(r^2 + 0.01 h^2); see sph/artificial_viscosity.hpp.
+template <bool Quadratic>
+struct Viscous {
+  V rho, h_rho, alpha_c, beta, h, soft;  ///< h and 0.01 h^2 in quanta
+
+  Viscous(const FlowConstants& k, double quantum)
+      : alpha_c(set(-k.numerics.alpha * k.c_s)), beta(set(k.numerics.beta)), h(set(k.h / quantum)), soft(set(0.01 * k.h * k.h / (quantum * quantum))) {}
+
+  /// Chooses the particles i.
+  HWY_INLINE void of(V rho_i) {
+    rho = rho_i, h_rho = hn::Mul(hn::Mul(set(2.0f), h), rho_i);
+    if constexpr (!Quadratic) h_rho = hn::Mul(h_rho, alpha_c);
+  }
+
+  HWY_INLINE V operator()(V v_dot_r, V s, V rho_j) const {
+    const V approach = hn::Min(v_dot_r, hn::Zero(D())), soft_s = hn::Add(s, soft);
+    const V share = hn::Div(rho_j, hn::Mul(hn::Add(rho, rho_j), soft_s));
+    const V linear = hn::Mul(hn::Mul(h_rho, approach), share);  // rho_i rho_j/rho_mean mu
+    if constexpr (!Quadratic) return linear;                    // with -alpha c_s
+    return hn::Mul(linear, hn::MulAdd(beta, hn::Div(hn::Mul(h, approach), soft_s), alpha_c));
+  }
+};
+
+template <class Kernel, bool Quadratic>
+HWY_ATTR void momentum_loop(const PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t chunk) {
+  const D d;
+  const Kernel kernel(f.fixed.quantum / k.h);
+  Viscous<Quadratic> viscous(k, f.fixed.quantum);
+  const V quantum = set(f.fixed.quantum), b_max = set(k.walls.b_max), zero = hn::Zero(d), volume_w = set(k.dx * k.dx);
+  const V to_force = set(-sigma_h2(k) * f.fixed.quantum), gx = set(k.g.x), gy = set(k.g.y);
+  const bool only_approaching = k.walls.contact == WallContact::approaching, smooth = k.walls.slip == WallSlip::free_slip;
+  const std::size_t begin = chunk * ClusterList::chunk_size, end = std::min(begin + ClusterList::chunk_size, f.soil_clusters.size() - 1);
+  for (std::size_t c = begin; c < end; ++c) {
+    const std::size_t i = f.soil_clusters[c], count = f.soil_clusters[c + 1] - i;
+    V X, Y, vx, vy, volume, q, rho, material, sxx, syy, sxy, p;
+    hn::LoadInterleaved4(d, f.soil.motion.data() + 4 * i, X, Y, vx, vy);
+    hn::LoadInterleaved4(d, f.soil.density.data() + 4 * i, volume, q, rho, material);
+    hn::LoadInterleaved4(d, f.soil.stress.data() + 4 * i, sxx, syy, sxy, p);
+    viscous.of(rho);
+    V sum_x = zero, sum_y = zero;  // of V_j (s_i + s_j - rho_i rho_j Pi) r_ij F
+    const Neighbours near = neighbours(f.soil_soil, c);
+    Separations next = separations(X, Y, f.soil.motion.data(), near.begin);
+    for (const std::uint32_t* j = near.begin; j != near.end; j += block) {
+      const Separations r = next;
+      next = separations(X, Y, f.soil.motion.data(), j + block);
+      Block F;
+      kernel.minus_F(r, F);
+      for (std::size_t b = 0; b < block; ++b) {
+        const float* HWY_RESTRICT motion = f.soil.motion.data() + 4 * std::size_t{j[b]};
+        const float* HWY_RESTRICT density = f.soil.density.data() + 4 * std::size_t{j[b]};
+        const float* HWY_RESTRICT stress = f.soil.stress.data() + 4 * std::size_t{j[b]};
+        const V x = r.x.v[b], y = r.y.v[b], VF = hn::Mul(set(density[0]), F.v[b]);
+        const V v_dot_r = hn::MulAdd(hn::Sub(vx, set(motion[2])), x, hn::Mul(hn::Sub(vy, set(motion[3])), y));
+        const V Pi = viscous(v_dot_r, r.s.v[b], set(density[2]));
+        const V xx = hn::Sub(hn::Add(sxx, set(stress[0])), Pi), yy = hn::Sub(hn::Add(syy, set(stress[1])), Pi), xy = hn::Add(sxy, set(stress[2]));
+        sum_x = hn::MulAdd(VF, hn::MulAdd(xx, x, hn::Mul(xy, y)), sum_x);
+        sum_y = hn::MulAdd(VF, hn::MulAdd(xy, x, hn::Mul(yy, y)), sum_y);
+      }
+    }
+    const Neighbours wall = neighbours(f.soil_wall, c);
+    for (const std::uint32_t* j = wall.begin; j != wall.end; j += block) {
+      const Separations r = separations(X, Y, f.walls.place.data(), j);
+      Block F;
+      kernel.minus_F(r, F);
+      for (std::size_t b = 0; b < block; ++b) {
+        const std::size_t group = 4 * std::size_t{j[b]};
+        const float* HWY_RESTRICT stress = f.walls.stress.data() + group;
+        const V x = r.x.v[b], y = r.y.v[b];
+        const WallPair w = wall_pair(x, y, vx, vy, f.walls.place.data() + group, stress[3], quantum, b_max, smooth);
+        V VF = hn::Mul(volume_w, F.v[b]);
+        if (only_approaching) VF = hn::IfThenElseZero(hn::Lt(w.v_dot_r, zero), VF);
+        const V Pi = viscous(w.v_dot_r, r.s.v[b], rho);
+        const V xx = hn::Sub(hn::Add(sxx, set(stress[0])), Pi), yy = hn::Sub(hn::Add(syy, set(stress[1])), Pi), xy = hn::Add(sxy, set(stress[2]));
+        sum_x = hn::MulAdd(VF, hn::MulAdd(xx, x, hn::Mul(xy, y)), sum_x);
+        sum_y = hn::MulAdd(VF, hn::MulAdd(xy, x, hn::Mul(yy, y)), sum_y);
+      }
+    }
+    const V scale = hn::Div(to_force, rho);
+    store_doubles(hn::MulAdd(scale, sum_x, gx), soil.ax.data() + i, count);
+    store_doubles(hn::MulAdd(scale, sum_y, gy), soil.ay.data() + i, count);
+  }
+}
+
+/// Calls f(kernel) with a null pointer to the kernel's type.
+template <class F>
+void with_kernel(const FlowConstants& k, F&& f) {
+  if (k.numerics.kernel == KernelShape::wendland_c2) f(static_cast<WendlandC2V*>(nullptr));
+  else f(static_cast<CubicSplineV*>(nullptr));
+}
+
+void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t chunk) {
+  with_kernel(k, [&]<class Kernel>(Kernel*) {
+    if (k.numerics.density_filter != DensityFilter::delta_sph) stress_loop<Kernel, false, true>(f, k, soil, chunk);
+    else if (k.laws.size() == 1) stress_loop<Kernel, true, true>(f, k, soil, chunk);
+    else stress_loop<Kernel, true, false>(f, k, soil, chunk);
+  });
+}
+
+void wall_stress_dispatch(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t chunk) {
+  with_kernel(k, [&]<class Kernel>(Kernel*) { wall_stress_loop<Kernel>(f, k, walls, chunk); });
+}
+
+void momentum_dispatch(const PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t chunk) {
+  with_kernel(k, [&]<class Kernel>(Kernel*) {
+    if (k.numerics.beta > 0.0) momentum_loop<Kernel, true>(f, k, soil, chunk);
+    else momentum_loop<Kernel, false>(f, k, soil, chunk);
+  });
 }
 
 const char* target_name() { return hwy::TargetName(HWY_TARGET); }
@@ -141,23 +432,20 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace talus {
 
-HWY_EXPORT(gradient_dispatch);
+HWY_EXPORT(stress_dispatch);
+HWY_EXPORT(wall_stress_dispatch);
 HWY_EXPORT(momentum_dispatch);
 HWY_EXPORT(target_name);
 
 const char* pair_loops_target() { return HWY_DYNAMIC_DISPATCH(target_name)(); }
 
-void gradient_sums(const PackedSoil& packed, const Soil& soil, const CellList& cells, const PairConstants& k, Chunk chunk, GradientSums& out) {
-  HWY_DYNAMIC_DISPATCH(gradient_dispatch)(packed, cells, k, chunk, soil.x.data(), soil.y.data(), out);
+void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t c) { HWY_DYNAMIC_DISPATCH(stress_dispatch)(f, k, soil, c); }
+
+void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t c) {
+  HWY_DYNAMIC_DISPATCH(wall_stress_dispatch)(f, k, walls, c);
 }
 
-void momentum_sums(const PackedSoil& packed, Soil& soil, const CellList& cells, const PairConstants& k, Chunk chunk) {
-  HWY_DYNAMIC_DISPATCH(momentum_dispatch)(packed, cells, k, chunk, soil.x.data(), soil.y.data(), soil.ax.data(), soil.ay.data());
-}
-
-void GradientSums::resize(std::size_t n) {
-  for (auto* array : {&Lxx, &Lxy, &Lyx, &Lyy, &diffusion}) array->resize(n);
-}
+void momentum_pass(const PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t c) { HWY_DYNAMIC_DISPATCH(momentum_dispatch)(f, k, soil, c); }
 
 }  // namespace talus
 #endif

@@ -1,37 +1,46 @@
 #pragma once
-// The soil-soil pair sums of the right-hand side, vectorised (Highway, chosen for the processor at run time). The plain
-// double-precision loops in right_hand_side.cpp are their oracle.
+// The right-hand side in vectors of single precision (Highway, chosen for the processor at run time). The plain
+// double-precision loops in right_hand_side.cpp are its oracle.
 
-#include "neighbours/cell_list.hpp"
-#include "sph/artificial_viscosity.hpp"
-#include "sph/packed_soil.hpp"
+#include <span>
+
+#include "particles/particles.hpp"
+#include "sph/cluster_list.hpp"
+#include "sph/flow_constants.hpp"
+#include "sph/packed.hpp"
 
 namespace talus {
 
-/// What the first pass leaves for each particle: velocity gradient [1/s] and diffusion sum.
-struct GradientSums {
-  std::vector<float> Lxx, Lxy, Lyx, Lyy, diffusion;
-  void resize(std::size_t n);
+/// What the vectorised loops read and write.
+struct PackedFlow {
+  FixedPoint fixed;
+  PackedSoil soil;
+  PackedWalls walls;
+  std::vector<std::uint32_t> soil_clusters, wall_clusters;  ///< first place of each
+  ClusterList soil_soil, soil_wall, wall_soil;              ///< target_source
 };
 
-/// What pairs need to know beside the particles.
-struct PairConstants {
-  float h;            ///< smoothing length [m]
-  float sigma_h2;     ///< of the kernel: sigma/h^2 [1/m4]
-  bool wendland;      ///< Wendland C2 instead of the cubic spline
-  bool diffuse;       ///< delta-SPH diffusion wanted
-  bool one_material;  ///< no need to compare materials
-  Vec2 hydrostatic;   ///< g/c_s^2: relative density per metre [1/m]
-  float alpha_c, beta;///< artificial viscosity: alpha c_s [m/s], beta [-]
-};
-
-/// Velocity gradient and diffusion of the particles of a chunk: [Z20] Eqs. 1 (volume form), 9; sph/density_filter.hpp.
-void gradient_sums(const PackedSoil& packed, const Soil& soil, const CellList& cells, const PairConstants& k, Chunk chunk, GradientSums& out);
-
-/// Accelerations of the particles of a chunk from soil-soil pairs, without gravity: [Z20] Eq. 2. Written to soil.ax, soil.ay.
-void momentum_sums(const PackedSoil& packed, Soil& soil, const CellList& cells, const PairConstants& k, Chunk chunk);
-
-/// Name of the instruction set that the pair loops use on this processor: "AVX2", "AVX3_ZEN4", ...
+/// Particles in one vector.
+std::size_t cluster_size();
+/// Name of the instruction set that the loops use on this processor: "AVX2", "AVX3_ZEN4", ...
 const char* pair_loops_target();
+
+/// Packs position, velocity and density of soil particles.
+void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, Chunk chunk);
+/// Packs place, normal and depth of all walls.
+void pack_walls(PackedFlow& f, const WallParticles& walls);
+
+/// Lists for chunk c of the clusters of `first`, which stand at `targets`: all `sources`, in `cells`, that are nearer than
+/// `distance` [m] to the cluster's bounding box. Both are groups of four that begin with x and y. No source has moved further
+/// than `moved` [m] since the cells were built; `nowhere` is the place that fills the lists up.
+void list_neighbours(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets, const CellList& cells,
+                     std::span<const float> sources, double distance, double moved, std::uint32_t nowhere, std::size_t c, ClusterList& list);
+
+/// First pass over chunk c of the soil's clusters: velocity gradient, density rate, stress ([Z20] Eqs. 1-10).
+void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t c);
+/// Stress of chunk c of the walls' clusters, extrapolated from the soil.
+void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t c);
+/// Second pass over chunk c of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included.
+void momentum_pass(const PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t c);
 
 }  // namespace talus

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "material/elastoviscoplastic.hpp"
+#include "sph/artificial_viscosity.hpp"
 #include "sph/continuity.hpp"
 #include "sph/density_filter.hpp"
 #include "sph/momentum.hpp"
@@ -14,7 +15,7 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t chunk_size = 128;  ///< particles that a thread takes at a time
+constexpr std::size_t chunk_size = 256;  ///< particles that a thread takes at a time
 
 /// Calls f(j, r_ij, r2) for every j of `cells` within the kernel's support of x_i, itself included, in the order of the cells.
 template <class Points, class F>
@@ -32,14 +33,6 @@ inline void for_neighbours(const CellList& cells, const Points& points, Vec2 x_i
 double distance_to_wall(const WallParticles& walls, std::size_t j, Vec2 r_ij) { return dot(r_ij, walls.normal(j)) - walls.depth[j]; }
 
 }  // namespace
-
-std::vector<PointLaw> point_laws(const std::vector<Material>& materials, const Rheology& rheology, double c_s) {
-  std::vector<PointLaw> laws;
-  for (const Material& m : materials)
-    laws.push_back({EquationOfState::weakly_compressible(m.rho0, c_s), m.c, {m.eta, rheology.gamma_dot_min},
-                    rheology.G.value_or(0.1 * m.rho0 * c_s * c_s)});
-  return laws;
-}
 
 RightHandSide::RightHandSide(FlowConstants constants) : k_(std::move(constants)), tan_phi_wall_(std::tan(k_.walls.phi)) {
   for (const PointLaw& law : k_.laws) rho0_.push_back(law.eos.rho0);
@@ -198,57 +191,61 @@ void RightHandSide::evaluate_plain(const Kernel& kernel, Soil& soil, WallParticl
   }
 }
 
-/// The same with the soil-soil sums in vectors of single precision.
-template <class Kernel>
-void RightHandSide::evaluate_packed(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) {
-  const Numerics& n = k_.numerics;
-  const bool diffuse = n.density_filter == DensityFilter::delta_sph;
-  const PairConstants pairs{.h = static_cast<float>(k_.h), .sigma_h2 = static_cast<float>(kernel.sigma_h2),
-                            .wendland = n.kernel == KernelShape::wendland_c2, .diffuse = diffuse, .one_material = k_.laws.size() == 1,
-                            .hydrostatic = (1.0 / (k_.c_s * k_.c_s)) * k_.g, .alpha_c = static_cast<float>(n.alpha * k_.c_s),
-                            .beta = static_cast<float>(n.beta)};
-  const std::size_t chunks = (soil.n_active + chunk_size - 1) / chunk_size;
-  const auto chunk = [&](std::size_t c) { return Chunk{c * chunk_size, std::min((c + 1) * chunk_size, soil.n_active)}; };
-  packed_.resize(soil.n_active, soil_cells.box());
-  sums_.resize(soil.n_active);
+void RightHandSide::renew(const Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells, double way) {
+  if (!uses_packed()) return;
+  const std::size_t lanes = cluster_size();
+  const double reach = 2.0 * k_.h + way;
+  const auto chunks = [](const std::vector<std::uint32_t>& first) {
+    return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size;
+  };
+  flow_.fixed = FixedPoint::covering(soil_cells.box(), k_.h);
+  flow_.soil_clusters = clusters(soil_cells, lanes), flow_.wall_clusters = clusters(wall_cells, lanes);
+  flow_.soil.resize(soil.n_active), flow_.walls.resize(walls.size());
+  flow_.soil_soil.chunks.resize(chunks(flow_.soil_clusters)), flow_.soil_wall.chunks.resize(chunks(flow_.soil_clusters));
+  flow_.wall_soil.chunks.resize(chunks(flow_.wall_clusters));
+  pack_walls(flow_, walls);
+  const auto n_soil = static_cast<std::uint32_t>(soil.n_active), n_wall = static_cast<std::uint32_t>(walls.size());
+  const auto& [fixed, s, w, soil_first, wall_first, soil_soil, soil_wall, wall_soil] = flow_;
 #pragma omp parallel
   {
+    pack(soil);
+    // Sources may have moved since the cells were built; from now on targets and sources both may move by `way`.
 #pragma omp for schedule(static)
-    for (std::size_t c = 0; c < chunks; ++c) packed_.pack_state(soil, chunk(c), rho0_);
-#pragma omp for schedule(static)
-    for (std::size_t c = 0; c < chunks; ++c) {
-      gradient_sums(packed_, soil, soil_cells, pairs, chunk(c), sums_);
-      for (std::size_t i = chunk(c).begin; i < chunk(c).end; ++i) {
-        Rates rates{{sums_.Lxx[i], sums_.Lxy[i], sums_.Lyx[i], sums_.Lyy[i]}, 0.0, std::numeric_limits<double>::infinity()};
-        rates.drho = -soil.rho[i] * trace(rates.L);
-        if (diffuse) rates.drho += 2.0 * n.delta * k_.h * k_.c_s * rho0_[static_cast<std::size_t>(soil.material[i])] * static_cast<double>(sums_.diffusion[i]);
-        add_wall_rates(kernel, soil, i, walls, wall_cells, rates);
-        apply_law(soil, i, rates);
-      }
-      packed_.pack_stress(soil, chunk(c));
+    for (std::size_t c = 0; c < soil_soil.chunks.size(); ++c) {
+      list_neighbours(fixed, soil_first, s.motion, soil_cells, s.motion, reach + way, way, n_soil, c, flow_.soil_soil);
+      list_neighbours(fixed, soil_first, s.motion, wall_cells, w.place, reach, 0.0, n_wall, c, flow_.soil_wall);
     }
-#pragma omp for schedule(static, chunk_size)
-    for (std::size_t w = 0; w < walls.size(); ++w) wall_stress(kernel, soil, walls, w, soil_cells);
 #pragma omp for schedule(static)
-    for (std::size_t c = 0; c < chunks; ++c) {
-      momentum_sums(packed_, soil, soil_cells, pairs, chunk(c));
-      for (std::size_t i = chunk(c).begin; i < chunk(c).end; ++i) {
-        const Vec2 a = k_.g + Vec2{soil.ax[i], soil.ay[i]} + wall_acceleration(kernel, soil, i, walls, wall_cells);
-        soil.ax[i] = a.x, soil.ay[i] = a.y;
-      }
-    }
+    for (std::size_t c = 0; c < wall_soil.chunks.size(); ++c)
+      list_neighbours(fixed, wall_first, w.place, soil_cells, s.motion, reach, way, n_soil, c, flow_.wall_soil);
+  }
+}
+
+/// Inside a parallel region.
+void RightHandSide::pack(const Soil& soil) {
+  const std::size_t chunks = (soil.n_active + chunk_size - 1) / chunk_size;
+#pragma omp for schedule(static)
+  for (std::size_t c = 0; c < chunks; ++c) pack_soil(flow_, k_, soil, {c * chunk_size, std::min((c + 1) * chunk_size, soil.n_active)});
+}
+
+/// The same in vectors of single precision.
+void RightHandSide::evaluate_packed(Soil& soil, WallParticles& walls) {
+#pragma omp parallel
+  {
+    pack(soil);
+#pragma omp for schedule(static)
+    for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) stress_pass(flow_, k_, soil, c);
+#pragma omp for schedule(static)
+    for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, k_, walls, c);
+#pragma omp for schedule(static)
+    for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) momentum_pass(flow_, k_, soil, c);
   }
 }
 
 void RightHandSide::evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) {
-  // The mass form of continuity is there to repeat the paper; only the plain loops know it.
-  const bool packed = k_.numerics.precision == Precision::single && k_.numerics.continuity == Continuity::volume;
-  const auto with = [&](const auto& kernel) {
-    if (packed) evaluate_packed(kernel, soil, walls, soil_cells, wall_cells);
-    else evaluate_plain(kernel, soil, walls, soil_cells, wall_cells);
-  };
-  if (k_.numerics.kernel == KernelShape::cubic_spline) with(CubicSpline{k_.h});
-  else with(WendlandC2{k_.h});
+  if (uses_packed()) evaluate_packed(soil, walls);
+  else if (k_.numerics.kernel == KernelShape::cubic_spline) evaluate_plain(CubicSpline{k_.h}, soil, walls, soil_cells, wall_cells);
+  else evaluate_plain(WendlandC2{k_.h}, soil, walls, soil_cells, wall_cells);
 }
 
 void RightHandSide::filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const {

@@ -3,41 +3,15 @@
 
 #include <vector>
 
-#include "material/bingham.hpp"
-#include "material/equation_of_state.hpp"
-#include "material/material.hpp"
 #include "neighbours/cell_list.hpp"
 #include "particles/particles.hpp"
-#include "sph/artificial_viscosity.hpp"
+#include "sph/cluster_list.hpp"
+#include "sph/flow_constants.hpp"
 #include "sph/kernel.hpp"
-#include "sph/numerics.hpp"
-#include "sph/packed_soil.hpp"
+#include "sph/packed.hpp"
 #include "sph/pair_loops.hpp"
 
 namespace talus {
-
-/// What the law of a point needs to know of its material.
-struct PointLaw {
-  EquationOfState eos;
-  double c;         ///< cohesion [Pa]
-  Bingham bingham;
-  double G;         ///< numerical shear modulus of the elastic law [Pa]
-};
-
-/// Constants of a run that every pair sees.
-struct FlowConstants {
-  double h = 0.0;    ///< smoothing length [m]
-  double dx = 0.0;   ///< particle spacing [m]
-  double c_s = 0.0;  ///< speed of sound [m/s]
-  Vec2 g;            ///< gravity [m/s2]
-  Rheology rheology;
-  Numerics numerics;
-  Walls walls;
-  std::vector<PointLaw> laws;  ///< by material
-};
-
-/// Builds the point laws of `materials`; c_s [m/s].
-std::vector<PointLaw> point_laws(const std::vector<Material>& materials, const Rheology& rheology, double c_s);
 
 /// Evaluates rates of change. Gather loops only: every particle sums its own neighbours in the order of the cells, so the
 /// result has the same bits for any number of threads. The soil-soil sums come in two precisions; the double-precision loops are
@@ -46,9 +20,13 @@ class RightHandSide {
  public:
   explicit RightHandSide(FlowConstants constants);
 
+  /// Finds the neighbours anew. Call it whenever the soil has been sorted, before evaluate(), and again before a particle goes
+  /// further than `way` [m] from where it is now. No particle has moved further than `way` since soil_cells was built.
+  void renew(const Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells, double way);
+
   /// Fills ax, ay, drho, dt** and the derived p, s**, gamma_dot of the active soil, and the extrapolated stress of the walls.
   /// With the elastic law it first returns t** to the yield surface.
-  /// Both cell lists must cover 2h around every particle's present position.
+  /// The reach of both cell lists must cover 2h around every particle's present position.
   void evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells);
 
   /// One pass of the Shepard filter over the densities of the active soil.
@@ -65,8 +43,10 @@ class RightHandSide {
 
   template <class Kernel>
   void evaluate_plain(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
-  template <class Kernel>
-  void evaluate_packed(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells);
+  /// The mass form of continuity is there to repeat the paper; only the plain loops know it.
+  bool uses_packed() const { return k_.numerics.precision == Precision::single && k_.numerics.continuity == Continuity::volume; }
+  void pack(const Soil& soil);
+  void evaluate_packed(Soil& soil, WallParticles& walls);
   template <class Kernel>
   Rates soil_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const CellList& soil_cells) const;
   template <class Kernel>
@@ -84,8 +64,7 @@ class RightHandSide {
   FlowConstants k_;
   double tan_phi_wall_;
   std::vector<double> rho0_;  ///< by material [kg/m3]
-  PackedSoil packed_;
-  GradientSums sums_;
+  PackedFlow flow_;
 };
 
 }  // namespace talus

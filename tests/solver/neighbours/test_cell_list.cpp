@@ -26,7 +26,7 @@ std::set<std::pair<std::uint32_t, std::uint32_t>> pairs_of(const Cloud& c, doubl
   cells.build(c.x, c.y, reach);
   std::set<std::pair<std::uint32_t, std::uint32_t>> found;
   for (std::uint32_t i = 0; i < c.x.size(); ++i)
-    cells.for_ranges({c.x[i], c.y[i]}, [&](std::uint32_t begin, std::uint32_t end) {
+    cells.for_ranges(Vec2{c.x[i], c.y[i]}, [&](std::uint32_t begin, std::uint32_t end) {
       for (std::uint32_t k = begin; k < end; ++k) {
         const std::uint32_t j = cells.order()[k];
         if (norm2(Vec2{c.x[i] - c.x[j], c.y[i] - c.y[j]}) >= reach * reach) continue;
@@ -60,7 +60,7 @@ TEST(CellList, SearchesFromOutsideTheGrid) {
   CellList cells;
   cells.build(std::vector<double>{0.0, 1.0}, std::vector<double>{0.0, 0.0}, 0.5);
   std::size_t seen = 0;
-  cells.for_ranges({-0.4, 0.2}, [&](std::uint32_t begin, std::uint32_t end) { seen += end - begin; });
+  cells.for_ranges(Vec2{-0.4, 0.2}, [&](std::uint32_t begin, std::uint32_t end) { seen += end - begin; });
   EXPECT_GE(seen, 1u);
 }
 
@@ -74,7 +74,7 @@ TEST(CellList, OneStrayPointFarAwayDoesNotExhaustMemory) {
 TEST(CellList, EmptyCloud) {
   CellList cells;
   cells.build({}, {}, 1.0);
-  cells.for_ranges({0, 0}, [](std::uint32_t, std::uint32_t) { FAIL(); });
+  cells.for_ranges(Vec2{0, 0}, [](std::uint32_t, std::uint32_t) { FAIL(); });
 }
 
 TEST(Permute, FollowsTheOrderAndKeepsTheTail) {

@@ -1,0 +1,31 @@
+#pragma once
+// Neighbours of clusters: as many particles as a vector has lanes, close to each other, share one list of the particles that
+// may come near any of them (after Pall & Hess 2013). One vector then holds one value of all particles of a cluster, and each
+// particle sums its neighbours in ascending order whatever the width of the vector.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "neighbours/cell_list.hpp"
+
+namespace talus {
+
+/// Cuts places in cell order into clusters of up to `lanes`; no cluster reaches over the end of a row of cells.
+/// @returns first place of each cluster, and one more: the number of places
+std::vector<std::uint32_t> clusters(const CellList& cells, std::size_t lanes);
+
+/// For each cluster the places of the particles to sum over, ascending.
+struct ClusterList {
+  static constexpr std::size_t chunk_size = 32;  ///< clusters that a thread takes at a time
+  /// Each list is filled up to a multiple of it with a place where nothing is, and so many more stand behind the last.
+  static constexpr std::size_t block = 2;
+
+  struct Chunk {
+    std::vector<std::uint32_t> places;
+    std::array<std::uint32_t, chunk_size + 1> at;  ///< where each cluster's part of `places` begins
+  };
+  std::vector<Chunk> chunks;
+};
+
+}  // namespace talus

@@ -1,0 +1,40 @@
+#include "sph/packed.hpp"
+
+#include <algorithm>
+#include <bit>
+
+namespace talus {
+
+namespace {
+constexpr std::size_t padding = 16;  ///< particles behind the last
+}
+
+FixedPoint FixedPoint::covering(Box box, double h) {
+  return {{box.lo.x - 4.0 * h, box.lo.y - 4.0 * h}, (std::max(box.width(), box.height()) + 8.0 * h) / static_cast<double>(1 << 30)};
+}
+
+namespace {
+
+/// Groups of four, first two values far away behind place n.
+void resize_places(std::vector<float>& groups, std::size_t n) {
+  const float far = std::bit_cast<float>(std::int32_t{3 << 29});
+  groups.assign(4 * (n + padding), 0.0f);
+  for (std::size_t i = 4 * n; i < groups.size(); i += 4) groups[i] = groups[i + 1] = far;
+}
+
+}  // namespace
+
+void PackedSoil::resize(std::size_t n) {
+  if (q.size() == n + padding) return;
+  resize_places(motion, n);
+  for (auto* group : {&density, &stress}) group->assign(4 * (n + padding), 0.0f);
+  q.assign(n + padding, 0.0f);
+}
+
+void PackedWalls::resize(std::size_t n) {
+  if (place.size() == 4 * (n + padding)) return;
+  resize_places(place, n);
+  stress.assign(4 * (n + padding), 1.0f);  // a depth, that one can divide by
+}
+
+}  // namespace talus

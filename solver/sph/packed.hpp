@@ -1,0 +1,42 @@
+#pragma once
+// Particles as the vectorised pair loops read them: single precision, four values a group so that a neighbour is one or two
+// cache lines, positions as fixed point so that differences of neighbours are exact however large the terrain.
+
+#include <cstdint>
+#include <vector>
+
+#include "math/vec2.hpp"
+
+namespace talus {
+
+/// One contiguous run [begin, end).
+struct Chunk {
+  std::size_t begin, end;
+};
+
+/// Positions in whole units of `quantum` from `lo`.
+struct FixedPoint {
+  Vec2 lo;               ///< [m]
+  double quantum = 1.0;  ///< metres per unit
+
+  /// For points of `box` and up to 4 h around it, in [0, 2^30]: room for differences of any two in 32 bits.
+  static FixedPoint covering(Box box, double h);
+};
+
+/// Place n, one behind the last of n particles, is far from everything and has no volume; so are some more, so that whole
+/// vectors can be loaded from anywhere. Integers are kept as bit patterns of floats.
+struct PackedSoil {
+  std::vector<float> motion;   ///< x, y [quantum, as integers], vx, vy [m/s]
+  std::vector<float> density;  ///< m/rho [m2], rho/rho0 - 1 less its hydrostatic part [-], rho [kg/m3], material
+  std::vector<float> stress;   ///< sxx, syy, sxy, p [Pa]
+  std::vector<float> q;        ///< rho/rho0 - 1 [-], not grouped
+  void resize(std::size_t n);
+};
+
+struct PackedWalls {
+  std::vector<float> place;    ///< x, y [quantum, as integers], nx, ny [-]
+  std::vector<float> stress;   ///< sxx, syy, sxy [Pa], depth [m]
+  void resize(std::size_t n);
+};
+
+}  // namespace talus
