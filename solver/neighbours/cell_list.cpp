@@ -10,7 +10,8 @@ namespace {
 constexpr std::int64_t max_cells = 1 << 22, max_rows = 1 << 11;
 }  // namespace
 
-void CellList::build(std::span<const double> x, std::span<const double> y, double reach) {
+template <class Real>
+void CellList::build(std::span<const Real> x, std::span<const Real> y, double reach) {
   const std::size_t n = x.size();
   inverse_reach_ = 1.0 / reach;
   order_.resize(n);
@@ -41,5 +42,8 @@ void CellList::build(std::span<const double> x, std::span<const double> y, doubl
   for (std::size_t c = starts_.size() - 1; c > 0; --c) starts_[c] = starts_[c - 1];
   starts_[0] = 0;
 }
+
+template void CellList::build(std::span<const float>, std::span<const float>, double);
+template void CellList::build(std::span<const double>, std::span<const double>, double);
 
 }  // namespace talus

@@ -25,7 +25,9 @@ class CellList {
   /// @param x,y    coordinates [m]
   /// @param reach  largest distance that will be searched [m], > 0
   /// The order is stable: points of one cell keep their sequence.
-  void build(std::span<const double> x, std::span<const double> y, double reach);
+  template <class Real>
+  void build(std::span<const Real> x, std::span<const Real> y, double reach);
+  void build(const std::vector<double>& x, const std::vector<double>& y, double reach) { build(std::span(x), std::span(y), reach); }
 
   /// order()[k] = index before sorting of the point that must stand at place k. Apply it before searching.
   std::span<const std::uint32_t> order() const { return order_; }

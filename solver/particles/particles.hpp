@@ -18,13 +18,14 @@ struct Soil {
   std::vector<double> txx, tyy, txy;  ///< deviatoric stress of the elastic law [Pa]
   std::vector<double> m;            ///< mass [kg/m]
   std::vector<double> tan_phi;      ///< tangent of the friction angle [-]
+  // What evaluations in double precision write; empty where the vectorised loops run, which keep their own.
   std::vector<double> ax, ay;       ///< acceleration of the last evaluation [m/s2]
   std::vector<double> drho;         ///< rate of density [kg/m3/s]
   std::vector<double> dtxx, dtyy, dtxy;  ///< rate of deviatoric stress [Pa/s]
   std::vector<double> gamma_dot;    ///< shear rate of the last evaluation [1/s]
   std::vector<double> p;            ///< pressure of the last evaluation [Pa]
   std::vector<double> sxx, syy, sxy;  ///< Cauchy stress of the last evaluation [Pa]
-  std::vector<double> x_sorted, y_sorted;  ///< position at the last sort [m]
+  std::vector<float> x_sorted, y_sorted;  ///< position at the last sort, rounded [m]
   std::vector<std::int32_t> material;
   std::vector<std::int32_t> id;     ///< identity, 0..size()-1
   std::size_t n_active = 0;
@@ -48,11 +49,15 @@ template <class S, class F>
 void for_each_rate(S& s, F&& f) {
   f("ax", s.ax), f("ay", s.ay), f("drho", s.drho), f("dtxx", s.dtxx), f("dtyy", s.dtyy), f("dtxy", s.dtxy);
 }
-/// All of them, with what an evaluation derives for pictures and walls: for resizing and checkpoints.
+/// What an evaluation derives for pictures and walls.
+template <class S, class F>
+void for_each_derived(S& s, F&& f) {
+  f("gamma_dot", s.gamma_dot), f("p", s.p), f("sxx", s.sxx), f("syy", s.syy), f("sxy", s.sxy);
+}
+/// All of them.
 template <class S, class F>
 void for_each_real(S& s, F&& f) {
-  for_each_state(s, f), for_each_rate(s, f);
-  f("gamma_dot", s.gamma_dot), f("p", s.p), f("sxx", s.sxx), f("syy", s.syy), f("sxy", s.sxy), f("x_sorted", s.x_sorted), f("y_sorted", s.y_sorted);
+  for_each_state(s, f), for_each_rate(s, f), for_each_derived(s, f);
 }
 
 /// Wall particles; fixed, sorted by cell once.

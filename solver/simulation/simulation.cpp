@@ -11,7 +11,8 @@
 namespace talus {
 namespace {
 
-constexpr double skin = 0.1;                        ///< way that a particle may go before all are sorted again [h]
+/// Way that a particle may go before all are sorted again [h]. Without lists of neighbours every search pays for it.
+constexpr double skin(bool lists) { return lists ? 0.3 : 0.1; }
 constexpr std::int64_t rest_interval = 20;          ///< steps between two looks at the rest rule
 constexpr std::int64_t penetration_interval = 50;  ///< steps between two looks behind the walls
 
@@ -109,6 +110,12 @@ Simulation::Simulation(const Model& model, const ParticlePlan& plan, std::vector
       max_acceleration_(norm(model.g)),
       height_(fall_height(model)) {
   for (const SoilPoint& p : plan.soil) origin_.push_back(p.x);
+  soil_.x_sorted.resize(soil_.size()), soil_.y_sorted.resize(soil_.size());
+  if (VectorisedFlow::serves(model.numerics)) {
+    fast_.emplace(rhs_.constants(), soil_);
+    const auto release = [](const char*, auto& array) { array = {}; };
+    for_each_rate(soil_, release), for_each_derived(soil_, release);
+  }
   wall_cells_.build(walls_.x, walls_.y, 2.0 * rhs_.constants().h);
   const auto order = wall_cells_.order();
   for (auto* array : {&walls_.x, &walls_.y, &walls_.nx, &walls_.ny, &walls_.depth}) permute(*array, order, scratch_);
@@ -125,21 +132,45 @@ double Simulation::choose_step(double until) const {
 /// Cells over where the particles stood when they were sorted, wide enough for what they may have moved since.
 void Simulation::build_cells() {
   const std::size_t n = soil_.n_active;
-  soil_cells_.build(std::span(soil_.x_sorted).first(n), std::span(soil_.y_sorted).first(n), (2.0 + skin) * rhs_.constants().h);
+  const std::span<const float> x(soil_.x_sorted), y(soil_.y_sorted);
+  soil_cells_.build(x.first(n), y.first(n), (2.0 + skin(fast_.has_value())) * rhs_.constants().h);
 }
 
 void Simulation::sort() {
-  soil_.x_sorted = soil_.x, soil_.y_sorted = soil_.y;
+  const auto round = [](double value) { return static_cast<float>(value); };
+  std::ranges::transform(soil_.x, soil_.x_sorted.begin(), round);
+  std::ranges::transform(soil_.y, soil_.y_sorted.begin(), round);
   build_cells();
   const auto order = soil_cells_.order();
   const auto apply = [&](const char*, auto& array) { permute(array, order, scratch_); };
   for_each_state(soil_, apply);
-  if (model_.numerics.integrator == Integrator::leapfrog) for_each_rate(soil_, apply);  // else the next evaluation writes them
-  apply("", soil_.x_sorted), apply("", soil_.y_sorted);
+  if (fast_) fast_->permute(order);
+  else for_each_rate(soil_, apply);
+  permute(soil_.x_sorted, order, scratch_float_), permute(soil_.y_sorted, order, scratch_float_);
   permute(soil_.material, order, scratch_int_);
   permute(soil_.id, order, scratch_int_);
   moved_ = 0.0;
-  rhs_.renew(soil_, walls_, soil_cells_, wall_cells_, skin * rhs_.constants().h);
+}
+
+/// Lists that last a few steps of dt: a wider way makes them longer, a shorter one makes them often. The best of both grows with
+/// the root of a step's way; measured, see solver/sph/README.md.
+void Simulation::renew(double dt) {
+  if (!fast_) return;
+  const double h = rhs_.constants().h, step = dt * max_speed_, widest = skin(true) * h;
+  way_ = std::max(std::clamp(0.4 * std::sqrt(model_.dx * step), 0.005 * h, widest), 0.51 * step);
+  travelled_ = 0.0;
+  fast_->renew(soil_, walls_, soil_cells_, wall_cells_, widest, way_);
+}
+
+/// Neighbours are sought from where a particle is in mid-step to where the others stood when they were sorted.
+void Simulation::find_neighbours(double dt) {
+  const double ahead = 0.5 * dt * max_speed_;
+  if (moved_ < 0.0 || moved_ + ahead > skin(fast_.has_value()) * rhs_.constants().h) {
+    sort();
+    renew(dt);
+  } else if (fast_ && travelled_ + ahead > way_) {
+    renew(dt);
+  }
 }
 
 /// Soil that left through an open end stops taking part: it is swapped behind the active ones and keeps its last state.
@@ -153,7 +184,10 @@ void Simulation::retire_departed() {
       continue;
     }
     const std::size_t last = --soil_.n_active;
-    for_each_real(soil_, [&](const char*, auto& array) { std::swap(array[i], array[last]); });
+    for_each_state(soil_, [&](const char*, auto& array) { std::swap(array[i], array[last]); });
+    const auto exchange = [&](const char*, auto& array) { std::swap(array[i], array[last]); };
+    if (fast_) fast_->swap(i, last);
+    else for_each_rate(soil_, exchange), for_each_derived(soil_, exchange);
     std::swap(soil_.material[i], soil_.material[last]);
     std::swap(soil_.id[i], soil_.id[last]);
     moved_ = -1.0;
@@ -163,18 +197,17 @@ void Simulation::retire_departed() {
 void Simulation::step(double until) {
   const double dt = choose_step(until);
   const Numerics& numerics = model_.numerics;
-  // Neighbours are sought from where a particle is now to where the others stood when they were sorted.
-  if (moved_ < 0.0 || moved_ + 0.5 * dt * max_speed_ > skin * rhs_.constants().h) sort();
+  find_neighbours(dt);
   if (numerics.density_filter == DensityFilter::shepard && steps_ > 0 && steps_ % numerics.filter_interval == 0)
     rhs_.filter_density(soil_, walls_, soil_cells_, wall_cells_);
-  const Evaluate evaluate = [&](Soil& soil) {
-    rhs_.evaluate(soil, walls_, soil_cells_, wall_cells_);
-    ++evaluations_;
-  };
-  if (numerics.integrator == Integrator::rk2)
-    step_rk2(soil_, start_, dt, evaluate);
-  else
-    step_leapfrog(soil_, start_, dt, evaluate);
+  const bool rk2 = numerics.integrator == Integrator::rk2;
+  if (fast_) {
+    travelled_ += rk2 ? step_rk2(*fast_, soil_, walls_, dt) : step_leapfrog(*fast_, soil_, walls_, dt);
+  } else {
+    const Evaluate evaluate = [&](Soil& soil) { rhs_.evaluate(soil, walls_, soil_cells_, wall_cells_); };
+    rk2 ? step_rk2(soil_, start_, dt, evaluate) : step_leapfrog(soil_, start_, dt, evaluate);
+  }
+  evaluations_ += rk2 ? 2 : 1;
   ++steps_;
   time_ = until - time_ <= dt ? until : time_ + dt;
   check();
@@ -189,7 +222,7 @@ void Simulation::check() {
   std::int32_t bad = none;
 #pragma omp parallel for schedule(static) reduction(max : v2, a2, d2) reduction(min : bad)
   for (std::size_t i = 0; i < soil_.n_active; ++i) {
-    const double v2_i = norm2(soil_.velocity(i)), a2_i = soil_.ax[i] * soil_.ax[i] + soil_.ay[i] * soil_.ay[i];
+    const double v2_i = norm2(soil_.velocity(i)), a2_i = norm2(fast_ ? fast_->acceleration(i) : Vec2{soil_.ax[i], soil_.ay[i]});
     const double d2_i = norm2(soil_.position(i) - Vec2{soil_.x_sorted[i], soil_.y_sorted[i]});
     const bool sound = std::isfinite(d2_i + v2_i + a2_i + soil_.rho[i]) && soil_.rho[i] > 0.0 && v2_i < 100.0 * bounds_.c * bounds_.c;
     if (!sound) bad = std::min(bad, soil_.id[i]);
@@ -246,12 +279,16 @@ Frame Simulation::frame() const {
   for (auto* array : {&f.position, &f.displacement, &f.velocity}) array->resize(n);
   for (auto* array : {&f.density, &f.pressure, &f.phi, &f.shear_rate}) array->resize(n);
   f.stress.resize(n);
+  Soil unpacked;
+  if (fast_) fast_->unpack(unpacked);
+  const Soil& derived = fast_ ? unpacked : soil_;
   for (std::size_t i = 0; i < soil_.size(); ++i) {
     const auto k = static_cast<std::size_t>(soil_.id[i]);
     f.position[k] = soil_.position(i), f.displacement[k] = soil_.position(i) - origin_[k], f.velocity[k] = soil_.velocity(i);
-    f.density[k] = soil_.rho[i], f.pressure[k] = soil_.p[i];
-    f.phi[k] = std::atan(soil_.tan_phi[i]), f.shear_rate[k] = soil_.gamma_dot[i];
-    f.stress[k] = {soil_.sxx[i], soil_.syy[i], -3.0 * soil_.p[i] - soil_.sxx[i] - soil_.syy[i], soil_.sxy[i]};  // tr sigma = -3 p
+    f.density[k] = soil_.rho[i], f.pressure[k] = derived.p[i];
+    f.phi[k] = std::atan(soil_.tan_phi[i]), f.shear_rate[k] = derived.gamma_dot[i];
+    const Sym2 s = derived.stress(i);
+    f.stress[k] = {s.xx, s.yy, -3.0 * derived.p[i] - s.xx - s.yy, s.xy};  // tr sigma = -3 p
   }
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const std::size_t k = soil_.size() + w;
@@ -264,12 +301,17 @@ Frame Simulation::frame() const {
 
 State Simulation::state() const {
   State s;
-  for_each_real(soil_, [&](const char* name, const auto& array) { s.reals[name] = array; });
+  const auto save = [&](const char* name, const auto& array) { s.reals[name].assign(array.begin(), array.end()); };
+  Soil unpacked;
+  if (fast_) fast_->unpack(unpacked);
+  const Soil& evaluated = fast_ ? unpacked : soil_;
+  for_each_state(soil_, save), for_each_rate(evaluated, save), for_each_derived(evaluated, save);
+  save("x_sorted", soil_.x_sorted), save("y_sorted", soil_.y_sorted);
   for_each_wall_real(walls_, [&](const char* name, const auto& array) { s.reals[name] = array; });
   s.reals["scalars"] = {time_, peak_speed_, max_speed_, max_acceleration_, slow_since_, moved_};
   s.integers["material"].assign(soil_.material.begin(), soil_.material.end());
   s.integers["id"].assign(soil_.id.begin(), soil_.id.end());
-  s.integers["penetrated"] = penetrated_;
+  s.integers["penetrated"].assign(penetrated_.begin(), penetrated_.end());
   s.integers["counters"] = {static_cast<std::int64_t>(soil_.n_active), steps_, evaluations_};
   return s;
 }
@@ -280,7 +322,15 @@ void Simulation::restore(const State& state) {
     if (it == map.end() || it->second.size() != n) throw IoError("the checkpoint does not belong to this case: '" + name + "' differs");
     return it->second;
   };
-  for_each_real(soil_, [&](const char* name, auto& array) { array = take(state.reals, name, array.size()); });
+  const auto load = [&](const char* name, auto& array) {
+    const auto& saved = take(state.reals, name, soil_.size());
+    array.assign(saved.begin(), saved.end());
+  };
+  Soil unpacked;
+  Soil& evaluated = fast_ ? unpacked : soil_;
+  for_each_state(soil_, load), for_each_rate(evaluated, load), for_each_derived(evaluated, load);
+  load("x_sorted", soil_.x_sorted), load("y_sorted", soil_.y_sorted);
+  if (fast_) fast_->pack(unpacked);
   for_each_wall_real(walls_, [&](const char* name, auto& array) { array = take(state.reals, name, array.size()); });
   const auto& scalars = take(state.reals, "scalars", 6);
   time_ = scalars[0], peak_speed_ = scalars[1], max_speed_ = scalars[2], max_acceleration_ = scalars[3], slow_since_ = scalars[4];
@@ -293,13 +343,14 @@ void Simulation::restore(const State& state) {
       throw IoError("the checkpoint does not belong to this case: identities out of range");
     soil_.material[i] = static_cast<std::int32_t>(material[i]), soil_.id[i] = static_cast<std::int32_t>(id[i]);
   }
-  penetrated_ = take(state.integers, "penetrated", penetrated_.size());
+  const auto& penetrated = take(state.integers, "penetrated", penetrated_.size());
+  penetrated_.assign(penetrated.begin(), penetrated.end());
   const auto& counters = take(state.integers, "counters", 3);
   if (counters[0] < 0 || counters[0] > static_cast<std::int64_t>(soil_.size()))
     throw IoError("the checkpoint does not belong to this case: more active particles than there are");
   soil_.n_active = static_cast<std::size_t>(counters[0]), steps_ = counters[1], evaluations_ = counters[2];
   build_cells();
-  rhs_.renew(soil_, walls_, soil_cells_, wall_cells_, skin * rhs_.constants().h);
+  renew(0.0);
 }
 
 }  // namespace talus

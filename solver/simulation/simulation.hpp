@@ -1,6 +1,7 @@
 #pragma once
 // A deterministic run: particles made from a model, stepped to the end, read off as frames, history and result.
 
+#include <optional>
 #include <vector>
 
 #include "integrate/integrator.hpp"
@@ -63,8 +64,10 @@ class Simulation {
 
  private:
   double choose_step(double until) const;
+  void find_neighbours(double dt);
   void sort();
   void build_cells();
+  void renew(double dt);
   void retire_departed();
   void check();
   void count_penetrations();
@@ -74,15 +77,18 @@ class Simulation {
   RightHandSide rhs_;
   Soil soil_;
   WallParticles walls_;
+  std::optional<VectorisedFlow> fast_;     ///< unset: rhs_ evaluates
   CellList soil_cells_, wall_cells_;
   StepStart start_;
   std::vector<Vec2> origin_;               ///< starting position by id [m]
-  std::vector<std::int64_t> penetrated_;   ///< by id: ever seen behind the wall
+  std::vector<std::uint8_t> penetrated_;   ///< by id: ever seen behind the wall
   std::vector<double> scratch_;
+  std::vector<float> scratch_float_;
   std::vector<std::int32_t> scratch_int_;
   StepBounds bounds_;
   double time_ = 0.0, peak_speed_ = 0.0, max_speed_ = 0.0, max_acceleration_ = 0.0;
   double moved_ = -1.0;                    ///< largest displacement since the last sort [m]; < 0: sort before the next step
+  double way_ = 0.0, travelled_ = 0.0;     ///< that the lists of neighbours allow, and that may have been gone since [m]
   double slow_since_ = -1.0;               ///< time since when the slide has been slower than the rest speed; < 0: it is not
   double height_ = 0.0;
   std::int64_t steps_ = 0, evaluations_ = 0;

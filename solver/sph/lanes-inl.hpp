@@ -53,6 +53,30 @@ HWY_INLINE void store_doubles(V v, double* HWY_RESTRICT to, std::size_t count) {
   for (std::size_t l = 0; l < count; ++l) to[l] = static_cast<double>(buffer[l]);
 }
 
+/// Adds the first `count` lanes to the doubles at `to`.
+HWY_INLINE void add_doubles(V v, double* HWY_RESTRICT to, std::size_t count) {
+  const Doubles dd;
+  if (count == lanes) {
+    hn::StoreU(hn::Add(hn::LoadU(dd, to), hn::PromoteTo(dd, hn::LowerHalf(v))), dd, to);
+    hn::StoreU(hn::Add(hn::LoadU(dd, to + lanes / 2), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), v))), dd, to + lanes / 2);
+    return;
+  }
+  HWY_ALIGN float buffer[lanes];
+  hn::Store(v, D(), buffer);
+  for (std::size_t l = 0; l < count; ++l) to[l] += static_cast<double>(buffer[l]);
+}
+
+/// Writes the first `count` lanes to `to`.
+HWY_INLINE void store(V v, float* HWY_RESTRICT to, std::size_t count) {
+  if (count == lanes) {
+    hn::StoreU(v, D(), to);
+    return;
+  }
+  HWY_ALIGN float buffer[lanes];
+  hn::Store(v, D(), buffer);
+  for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
+}
+
 /// Writes the first `count` groups of four to `to`.
 HWY_INLINE void store_groups(V a, V b, V c, V d, float* HWY_RESTRICT to, std::size_t count) {
   if (count == lanes) {

@@ -25,10 +25,10 @@ void resize_places(std::vector<float>& groups, std::size_t n) {
 }  // namespace
 
 void PackedSoil::resize(std::size_t n) {
-  if (q.size() == n + padding) return;
+  n_ = n;
   resize_places(motion, n);
   for (auto* group : {&density, &stress}) group->assign(4 * (n + padding), 0.0f);
-  q.assign(n + padding, 0.0f);
+  for (auto* array : {&q, &ax, &ay, &drho, &dtxx, &dtyy, &dtxy, &gamma_dot}) array->assign(n + padding, 0.0f);
 }
 
 void PackedWalls::resize(std::size_t n) {

@@ -30,8 +30,20 @@ struct PackedSoil {
   std::vector<float> density;  ///< m/rho [m2], rho/rho0 - 1 less its hydrostatic part [-], rho [kg/m3], material
   std::vector<float> stress;   ///< sxx, syy, sxy, p [Pa]
   std::vector<float> q;        ///< rho/rho0 - 1 [-], not grouped
+  std::vector<float> ax, ay, drho, dtxx, dtyy, dtxy, gamma_dot;  ///< of the last evaluation, as in Soil
+
   void resize(std::size_t n);
+  std::size_t size() const { return n_; }
+
+ private:
+  std::size_t n_ = 0;
 };
+
+/// The rates that a state can be moved on with; calls f(name, array).
+template <class P, class F>
+void for_each_packed_rate(P& s, F&& f) {
+  f("ax", s.ax), f("ay", s.ay), f("drho", s.drho), f("dtxx", s.dtxx), f("dtyy", s.dtyy), f("dtxy", s.dtxy);
+}
 
 struct PackedWalls {
   std::vector<float> place;    ///< x, y [quantum, as integers], nx, ny [-]

@@ -1,7 +1,8 @@
-// Packing, and the lists of neighbours that the pair loops run over.
+// Packing, moving on, and the lists of neighbours that the pair loops run over.
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "sph/pair_loops.hpp"
 
@@ -15,42 +16,102 @@
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
-/// Fixed-point coordinates of the first `count` doubles at `from`, as bit patterns.
-HWY_INLINE V fixed_point(const double* from, std::size_t count, double lo, double per_quantum) {
+using DoubleV = hn::Vec<Doubles>;
+
+/// One value of all particles of a vector in double precision: lower and upper half.
+struct Wide {
+  DoubleV lo, hi;
+};
+HWY_INLINE Wide load(const double* HWY_RESTRICT from, std::size_t count) {
   const Doubles dd;
-  const hn::Rebind<std::int32_t, HalfD> di;
   HWY_ALIGN double buffer[lanes] = {};
   if (count < lanes) {
     for (std::size_t l = 0; l < count; ++l) buffer[l] = from[l];
     from = buffer;
   }
-  const auto half = [&](const double* x) HWY_ATTR {
-    return hn::DemoteTo(di, hn::Mul(hn::Sub(hn::LoadU(dd, x), hn::Set(dd, lo)), hn::Set(dd, per_quantum)));
-  };
-  return hn::BitCast(D(), hn::Combine(DI(), half(from + lanes / 2), half(from)));
+  return {hn::LoadU(dd, from), hn::LoadU(dd, from + lanes / 2)};
+}
+HWY_INLINE void store(Wide v, double* HWY_RESTRICT to, std::size_t count) {
+  const Doubles dd;
+  if (count == lanes) {
+    hn::StoreU(v.lo, dd, to), hn::StoreU(v.hi, dd, to + lanes / 2);
+    return;
+  }
+  HWY_ALIGN double buffer[lanes];
+  hn::Store(v.lo, dd, buffer), hn::Store(v.hi, dd, buffer + lanes / 2);
+  for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
+}
+HWY_INLINE Wide wide(V v) {
+  const Doubles dd;
+  return {hn::PromoteTo(dd, hn::LowerHalf(v)), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), v))};
+}
+HWY_INLINE V narrow(Wide v) {
+  const HalfD half;
+  return hn::Combine(D(), hn::DemoteTo(half, v.hi), hn::DemoteTo(half, v.lo));
+}
+HWY_INLINE Wide each(double value) { return {hn::Set(Doubles(), value), hn::Set(Doubles(), value)}; }
+HWY_INLINE Wide operator+(Wide a, Wide b) { return {hn::Add(a.lo, b.lo), hn::Add(a.hi, b.hi)}; }
+HWY_INLINE Wide operator-(Wide a, Wide b) { return {hn::Sub(a.lo, b.lo), hn::Sub(a.hi, b.hi)}; }
+HWY_INLINE Wide operator*(Wide a, Wide b) { return {hn::Mul(a.lo, b.lo), hn::Mul(a.hi, b.hi)}; }
+HWY_INLINE Wide operator/(Wide a, Wide b) { return {hn::Div(a.lo, b.lo), hn::Div(a.hi, b.hi)}; }
+
+/// Fixed-point coordinates as bit patterns.
+HWY_INLINE V fixed_point(Wide x, double lo, double per_quantum) {
+  const hn::Rebind<std::int32_t, HalfD> di;
+  const Wide units = (x - each(lo)) * each(per_quantum);
+  return hn::BitCast(D(), hn::Combine(DI(), hn::DemoteTo(di, units.hi), hn::DemoteTo(di, units.lo)));
 }
 
-HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& soil, Chunk chunk) {
+HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk) {
   const D d;
-  const double per_quantum = 1.0 / f.fixed.quantum, per_c2 = 1.0 / (k.c_s * k.c_s);
+  const double per_quantum = 1.0 / f.fixed.quantum;
+  const Wide dt = each(ahead), one = each(1.0);
+  const Wide gx = each(k.g.x / (k.c_s * k.c_s)), gy = each(k.g.y / (k.c_s * k.c_s));
   for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
     const std::size_t count = std::min(chunk.end - i, lanes);
-    HWY_ALIGN float volume[lanes] = {}, shifted[lanes] = {}, rho[lanes] = {}, material[lanes] = {}, q[lanes] = {};
-    for (std::size_t l = 0; l < count; ++l) {
-      const std::size_t n = i + l;
-      const double rho0 = k.laws[static_cast<std::size_t>(soil.material[n])].eos.rho0, q_n = (soil.rho[n] - rho0) / rho0;
-      const Vec2 from_lo = soil.position(n) - f.fixed.lo;
-      volume[l] = static_cast<float>(soil.m[n] / soil.rho[n]);
-      shifted[l] = static_cast<float>(q_n - per_c2 * dot(k.g, from_lo));
-      rho[l] = static_cast<float>(soil.rho[n]);
-      material[l] = static_cast<float>(soil.material[n]);
-      q[l] = static_cast<float>(q_n);
-    }
-    store_groups(hn::Load(d, volume), hn::Load(d, shifted), hn::Load(d, rho), hn::Load(d, material), f.soil.density.data() + 4 * i, count);
-    store_groups(fixed_point(soil.x.data() + i, count, f.fixed.lo.x, per_quantum), fixed_point(soil.y.data() + i, count, f.fixed.lo.y, per_quantum),
-                 load_doubles(soil.vx.data() + i, count), load_doubles(soil.vy.data() + i, count), f.soil.motion.data() + 4 * i, count);
-    std::copy_n(q, count, f.soil.q.data() + i);
+    const auto rate = [&](const std::vector<float>& array) HWY_ATTR { return wide(hn::LoadU(d, array.data() + i)); };
+    const auto state = [&](const std::vector<double>& array) HWY_ATTR { return load(array.data() + i, count); };
+    HWY_ALIGN double rho0[lanes];
+    HWY_ALIGN float material[lanes] = {};
+    std::fill_n(rho0, lanes, k.laws[0].eos.rho0);
+    if (k.laws.size() > 1)
+      for (std::size_t l = 0; l < count; ++l)
+        material[l] = static_cast<float>(soil.material[i + l]), rho0[l] = k.laws[static_cast<std::size_t>(soil.material[i + l])].eos.rho0;
+    const Wide vx = state(soil.vx), vy = state(soil.vy);
+    const Wide x = state(soil.x) + dt * vx, y = state(soil.y) + dt * vy;
+    const Wide rho = state(soil.rho) + dt * rate(f.soil.drho);
+    const Wide q = rho / load(rho0, lanes) - one;
+    const Wide hydrostatic = gx * (x - each(f.fixed.lo.x)) + gy * (y - each(f.fixed.lo.y));
+    store_groups(fixed_point(x, f.fixed.lo.x, per_quantum), fixed_point(y, f.fixed.lo.y, per_quantum), narrow(vx + dt * rate(f.soil.ax)),
+                 narrow(vy + dt * rate(f.soil.ay)), f.soil.motion.data() + 4 * i, count);
+    store_groups(narrow(state(soil.m) / rho), narrow(q - hydrostatic), narrow(rho), hn::Load(d, material), f.soil.density.data() + 4 * i, count);
+    hn::StoreU(narrow(q), d, f.soil.q.data() + i);
   }
+}
+
+HWY_ATTR double move_soil_loop(const PackedFlow& f, Soil& soil, double step, bool middle, Chunk chunk) {
+  const D d;
+  const Wide dt = each(step), half = each(0.5);
+  V farthest = hn::Zero(d);
+  for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
+    const std::size_t count = std::min(chunk.end - i, lanes);
+    const auto move = [&](std::vector<double>& array, const std::vector<float>& rate) HWY_ATTR {
+      const Wide from = load(array.data() + i, count), to = from + dt * wide(hn::LoadU(d, rate.data() + i));
+      store(to, array.data() + i, count);
+      return half * (from + to);
+    };
+    const Wide mean_vx = move(soil.vx, f.soil.ax), mean_vy = move(soil.vy, f.soil.ay);
+    move(soil.rho, f.soil.drho), move(soil.txx, f.soil.dtxx), move(soil.tyy, f.soil.dtyy), move(soil.txy, f.soil.dtxy);
+    V x, y, vx, vy;
+    hn::LoadInterleaved4(d, f.soil.motion.data() + 4 * i, x, y, vx, vy);
+    if (!middle) vx = narrow(mean_vx), vy = narrow(mean_vy);
+    store(load(soil.x.data() + i, count) + dt * (middle ? wide(vx) : mean_vx), soil.x.data() + i, count);
+    store(load(soil.y.data() + i, count) + dt * (middle ? wide(vy) : mean_vy), soil.y.data() + i, count);
+    V v2 = hn::MulAdd(vx, vx, hn::Mul(vy, vy));
+    if (count < lanes) v2 = hn::IfThenElseZero(hn::FirstN(d, count), v2);
+    farthest = hn::Max(farthest, v2);
+  }
+  return step * std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, farthest))));
 }
 
 struct BoxI {
@@ -116,12 +177,19 @@ HWY_AFTER_NAMESPACE();
 namespace talus {
 
 HWY_EXPORT(pack_soil_loop);
+HWY_EXPORT(move_soil_loop);
 HWY_EXPORT(list_chunk);
 HWY_EXPORT(lanes_in_use);
 
 std::size_t cluster_size() { return HWY_DYNAMIC_DISPATCH(lanes_in_use)(); }
 
-void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, Chunk chunk) { HWY_DYNAMIC_DISPATCH(pack_soil_loop)(f, k, soil, chunk); }
+void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk) {
+  HWY_DYNAMIC_DISPATCH(pack_soil_loop)(f, k, soil, ahead, chunk);
+}
+
+double move_soil(const PackedFlow& f, Soil& soil, double dt, bool middle, Chunk chunk) {
+  return HWY_DYNAMIC_DISPATCH(move_soil_loop)(f, soil, dt, middle, chunk);
+}
 
 void pack_walls(PackedFlow& f, const WallParticles& walls) {
   // Walls beyond the fixed point's box are too far from any soil to matter.

@@ -150,7 +150,8 @@ struct RatesV {
 };
 
 /// The law of the particles of one cluster, from i; RightHandSide::apply_law is its oracle.
-HWY_INLINE void apply_law(PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t i, std::size_t count, const RatesV& rates) {
+HWY_INLINE void apply_law(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t i, std::size_t count,
+                          const RatesV& rates) {
   const D d;
   const auto constant = [&](auto&& get) { return by_material(k, soil, i, count, get); };
   const V zero = hn::Zero(d), one = set(1.0f), third = set(1.0 / 3.0);
@@ -175,40 +176,41 @@ HWY_INLINE void apply_law(PackedFlow& f, const FlowConstants& k, Soil& soil, std
     viscosity = hn::Add(eta, hn::Div(tau_y, hn::Max(gamma_dot, set(k.rheology.gamma_dot_min))));
     txx = tyy = txy = zero;
   } else {
-    txx = load_doubles(soil.txx.data() + i, count), tyy = load_doubles(soil.tyy.data() + i, count), txy = load_doubles(soil.txy.data() + i, count);
+    const V dt = set(ahead);
+    const auto stress = [&](const std::vector<double>& t, const std::vector<float>& rate) HWY_ATTR {
+      return hn::MulAdd(dt, hn::LoadU(d, rate.data() + i), load_doubles(t.data() + i, count));
+    };
+    txx = stress(soil.txx, f.soil.dtxx), tyy = stress(soil.tyy, f.soil.dtyy), txy = stress(soil.txy, f.soil.dtxy);
     const V limit = as_printed ? hn::Mul(set(std::numbers::sqrt3), tau_y) : tau_y;
     const V size = hn::Sqrt(hn::Mul(set(0.5f), double_dot(txx, tyy, txy)));
     const M yields = hn::Gt(size, limit);
     if (!hn::AllFalse(d, yields)) {
-      const V scale = hn::IfThenElse(yields, hn::Div(limit, size), one);
-      HWY_ALIGN float by[lanes];
-      hn::Store(scale, d, by);
-      for (std::size_t l = 0; l < count; ++l) {
-        const double s = static_cast<double>(by[l]);
-        soil.txx[i + l] *= s, soil.tyy[i + l] *= s, soil.txy[i + l] *= s;
-      }
-      txx = hn::Mul(txx, scale), tyy = hn::Mul(tyy, scale), txy = hn::Mul(txy, scale);
+      const V excess = hn::IfThenElseZero(yields, hn::Sub(hn::Div(limit, size), one));
+      const auto give_back = [&](V& t, std::vector<double>& kept) HWY_ATTR {
+        const V by = hn::Mul(t, excess);
+        t = hn::Add(t, by);
+        if (keep) add_doubles(by, kept.data() + i, count);
+      };
+      give_back(txx, soil.txx), give_back(tyy, soil.tyy), give_back(txy, soil.txy);
     }
     const V two_G = constant([](const PointLaw& law) { return 2.0 * law.G; });
     const V two_spin = hn::Sub(rates.Lxy, rates.Lyx);  // Jaumann, see material/elastoviscoplastic.hpp
     const V turn = hn::Mul(two_spin, txy);
-    store_doubles(hn::MulAdd(two_G, exx, turn), soil.dtxx.data() + i, count);
-    store_doubles(hn::MulSub(two_G, eyy, turn), soil.dtyy.data() + i, count);
-    store_doubles(hn::MulAdd(two_G, exy, hn::Mul(hn::Mul(set(0.5f), two_spin), hn::Sub(tyy, txx))), soil.dtxy.data() + i, count);
+    store(hn::MulAdd(two_G, exx, turn), f.soil.dtxx.data() + i, count);
+    store(hn::MulSub(two_G, eyy, turn), f.soil.dtyy.data() + i, count);
+    store(hn::MulAdd(two_G, exy, hn::Mul(hn::Mul(set(0.5f), two_spin), hn::Sub(tyy, txx))), f.soil.dtxy.data() + i, count);
   }
   const V two_eta = hn::Add(viscosity, viscosity);
   const V sxx = hn::Sub(hn::MulAdd(two_eta, exx, txx), p), syy = hn::Sub(hn::MulAdd(two_eta, eyy, tyy), p), sxy = hn::MulAdd(two_eta, exy, txy);
   store_groups(sxx, syy, sxy, p, f.soil.stress.data() + 4 * i, count);
   const V rho0 = constant([](const PointLaw& law) { return law.eos.rho0; });
   // drho = -rho tr(L) + rho0 diffusion
-  store_doubles(hn::Mul(rho0, hn::NegMulAdd(hn::Add(q, one), trace, rates.diffusion)), soil.drho.data() + i, count);
-  store_doubles(gamma_dot, soil.gamma_dot.data() + i, count);
-  store_doubles(p, soil.p.data() + i, count);
-  store_doubles(sxx, soil.sxx.data() + i, count), store_doubles(syy, soil.syy.data() + i, count), store_doubles(sxy, soil.sxy.data() + i, count);
+  store(hn::Mul(rho0, hn::NegMulAdd(hn::Add(q, one), trace, rates.diffusion)), f.soil.drho.data() + i, count);
+  store(gamma_dot, f.soil.gamma_dot.data() + i, count);
 }
 
 template <class Kernel, bool Diffuse, bool OneMaterial>
-HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t chunk) {
+HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t chunk) {
   const D d;
   const Kernel kernel(f.fixed.quantum / k.h);
   const V quantum = set(f.fixed.quantum), b_max = set(k.walls.b_max), zero = hn::Zero(d);
@@ -263,7 +265,7 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, std
         distance = hn::IfThenElse(acts, hn::Min(distance, w.distance), distance);
       }
     }
-    apply_law(f, k, soil, i, count,
+    apply_law(f, k, soil, ahead, keep, i, count,
               {hn::Mul(to_L, Lxx), hn::Mul(to_L, Lxy), hn::Mul(to_L, Lyx), hn::Mul(to_L, Lyy), hn::Mul(to_diffusion, diffusion), distance});
   }
 }
@@ -339,7 +341,7 @@ struct Viscous {
 };
 
 template <class Kernel, bool Quadratic>
-HWY_ATTR void momentum_loop(const PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t chunk) {
+HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, std::size_t chunk) {
   const D d;
   const Kernel kernel(f.fixed.quantum / k.h);
   Viscous<Quadratic> viscous(k, f.fixed.quantum);
@@ -393,8 +395,8 @@ HWY_ATTR void momentum_loop(const PackedFlow& f, const FlowConstants& k, Soil& s
       }
     }
     const V scale = hn::Div(to_force, rho);
-    store_doubles(hn::MulAdd(scale, sum_x, gx), soil.ax.data() + i, count);
-    store_doubles(hn::MulAdd(scale, sum_y, gy), soil.ay.data() + i, count);
+    store(hn::MulAdd(scale, sum_x, gx), f.soil.ax.data() + i, count);
+    store(hn::MulAdd(scale, sum_y, gy), f.soil.ay.data() + i, count);
   }
 }
 
@@ -405,11 +407,11 @@ void with_kernel(const FlowConstants& k, F&& f) {
   else f(static_cast<CubicSplineV*>(nullptr));
 }
 
-void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t chunk) {
+void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t chunk) {
   with_kernel(k, [&]<class Kernel>(Kernel*) {
-    if (k.numerics.density_filter != DensityFilter::delta_sph) stress_loop<Kernel, false, true>(f, k, soil, chunk);
-    else if (k.laws.size() == 1) stress_loop<Kernel, true, true>(f, k, soil, chunk);
-    else stress_loop<Kernel, true, false>(f, k, soil, chunk);
+    if (k.numerics.density_filter != DensityFilter::delta_sph) stress_loop<Kernel, false, true>(f, k, soil, ahead, keep, chunk);
+    else if (k.laws.size() == 1) stress_loop<Kernel, true, true>(f, k, soil, ahead, keep, chunk);
+    else stress_loop<Kernel, true, false>(f, k, soil, ahead, keep, chunk);
   });
 }
 
@@ -417,10 +419,10 @@ void wall_stress_dispatch(PackedFlow& f, const FlowConstants& k, WallParticles& 
   with_kernel(k, [&]<class Kernel>(Kernel*) { wall_stress_loop<Kernel>(f, k, walls, chunk); });
 }
 
-void momentum_dispatch(const PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t chunk) {
+void momentum_dispatch(PackedFlow& f, const FlowConstants& k, std::size_t chunk) {
   with_kernel(k, [&]<class Kernel>(Kernel*) {
-    if (k.numerics.beta > 0.0) momentum_loop<Kernel, true>(f, k, soil, chunk);
-    else momentum_loop<Kernel, false>(f, k, soil, chunk);
+    if (k.numerics.beta > 0.0) momentum_loop<Kernel, true>(f, k, chunk);
+    else momentum_loop<Kernel, false>(f, k, chunk);
   });
 }
 
@@ -439,13 +441,15 @@ HWY_EXPORT(target_name);
 
 const char* pair_loops_target() { return HWY_DYNAMIC_DISPATCH(target_name)(); }
 
-void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t c) { HWY_DYNAMIC_DISPATCH(stress_dispatch)(f, k, soil, c); }
+void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t c) {
+  HWY_DYNAMIC_DISPATCH(stress_dispatch)(f, k, soil, ahead, keep, c);
+}
 
 void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t c) {
   HWY_DYNAMIC_DISPATCH(wall_stress_dispatch)(f, k, walls, c);
 }
 
-void momentum_pass(const PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t c) { HWY_DYNAMIC_DISPATCH(momentum_dispatch)(f, k, soil, c); }
+void momentum_pass(PackedFlow& f, const FlowConstants& k, std::size_t c) { HWY_DYNAMIC_DISPATCH(momentum_dispatch)(f, k, c); }
 
 }  // namespace talus
 #endif

@@ -25,8 +25,8 @@ std::size_t cluster_size();
 /// Name of the instruction set that the loops use on this processor: "AVX2", "AVX3_ZEN4", ...
 const char* pair_loops_target();
 
-/// Packs position, velocity and density of soil particles.
-void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, Chunk chunk);
+/// Packs position, velocity and density of soil particles as they will be after `ahead` [s] at the present rates.
+void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk);
 /// Packs place, normal and depth of all walls.
 void pack_walls(PackedFlow& f, const WallParticles& walls);
 
@@ -36,11 +36,17 @@ void pack_walls(PackedFlow& f, const WallParticles& walls);
 void list_neighbours(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets, const CellList& cells,
                      std::span<const float> sources, double distance, double moved, std::uint32_t nowhere, std::size_t c, ClusterList& list);
 
-/// First pass over chunk c of the soil's clusters: velocity gradient, density rate, stress ([Z20] Eqs. 1-10).
-void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t c);
+/// First pass over chunk c of the soil's clusters: velocity gradient, density rate, stress ([Z20] Eqs. 1-10), with the elastic
+/// stress as it will be after `ahead` [s]. `keep`: what returning it to the yield surface takes off is taken off the soil's.
+void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t c);
 /// Stress of chunk c of the walls' clusters, extrapolated from the soil.
 void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t c);
 /// Second pass over chunk c of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included.
-void momentum_pass(const PackedFlow& f, const FlowConstants& k, Soil& soil, std::size_t c);
+void momentum_pass(PackedFlow& f, const FlowConstants& k, std::size_t c);
+
+/// Moves soil particles on by dt [s] at the present rates; positions with the velocities of the last evaluation (`middle`) or
+/// with the mean of the old and the new ones.
+/// @returns the farthest way [m]
+double move_soil(const PackedFlow& f, Soil& soil, double dt, bool middle, Chunk chunk);
 
 }  // namespace talus

@@ -15,7 +15,7 @@
 namespace talus {
 namespace {
 
-constexpr std::size_t chunk_size = 256;  ///< particles that a thread takes at a time
+constexpr std::size_t chunk_size = 128;  ///< particles that a thread takes at a time
 
 /// Calls f(j, r_ij, r2) for every j of `cells` within the kernel's support of x_i, itself included, in the order of the cells.
 template <class Points, class F>
@@ -170,7 +170,6 @@ void RightHandSide::shepard(const Kernel& kernel, Soil& soil, const WallParticle
   std::copy(filtered.begin(), filtered.end(), soil.rho.begin());
 }
 
-/// The oracle: every sum in double precision, one pair after the other.
 template <class Kernel>
 void RightHandSide::evaluate_plain(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const {
 #pragma omp parallel
@@ -191,60 +190,8 @@ void RightHandSide::evaluate_plain(const Kernel& kernel, Soil& soil, WallParticl
   }
 }
 
-void RightHandSide::renew(const Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells, double way) {
-  if (!uses_packed()) return;
-  const std::size_t lanes = cluster_size();
-  const double reach = 2.0 * k_.h + way;
-  const auto chunks = [](const std::vector<std::uint32_t>& first) {
-    return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size;
-  };
-  flow_.fixed = FixedPoint::covering(soil_cells.box(), k_.h);
-  flow_.soil_clusters = clusters(soil_cells, lanes), flow_.wall_clusters = clusters(wall_cells, lanes);
-  flow_.soil.resize(soil.n_active), flow_.walls.resize(walls.size());
-  flow_.soil_soil.chunks.resize(chunks(flow_.soil_clusters)), flow_.soil_wall.chunks.resize(chunks(flow_.soil_clusters));
-  flow_.wall_soil.chunks.resize(chunks(flow_.wall_clusters));
-  pack_walls(flow_, walls);
-  const auto n_soil = static_cast<std::uint32_t>(soil.n_active), n_wall = static_cast<std::uint32_t>(walls.size());
-  const auto& [fixed, s, w, soil_first, wall_first, soil_soil, soil_wall, wall_soil] = flow_;
-#pragma omp parallel
-  {
-    pack(soil);
-    // Sources may have moved since the cells were built; from now on targets and sources both may move by `way`.
-#pragma omp for schedule(static)
-    for (std::size_t c = 0; c < soil_soil.chunks.size(); ++c) {
-      list_neighbours(fixed, soil_first, s.motion, soil_cells, s.motion, reach + way, way, n_soil, c, flow_.soil_soil);
-      list_neighbours(fixed, soil_first, s.motion, wall_cells, w.place, reach, 0.0, n_wall, c, flow_.soil_wall);
-    }
-#pragma omp for schedule(static)
-    for (std::size_t c = 0; c < wall_soil.chunks.size(); ++c)
-      list_neighbours(fixed, wall_first, w.place, soil_cells, s.motion, reach, way, n_soil, c, flow_.wall_soil);
-  }
-}
-
-/// Inside a parallel region.
-void RightHandSide::pack(const Soil& soil) {
-  const std::size_t chunks = (soil.n_active + chunk_size - 1) / chunk_size;
-#pragma omp for schedule(static)
-  for (std::size_t c = 0; c < chunks; ++c) pack_soil(flow_, k_, soil, {c * chunk_size, std::min((c + 1) * chunk_size, soil.n_active)});
-}
-
-/// The same in vectors of single precision.
-void RightHandSide::evaluate_packed(Soil& soil, WallParticles& walls) {
-#pragma omp parallel
-  {
-    pack(soil);
-#pragma omp for schedule(static)
-    for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) stress_pass(flow_, k_, soil, c);
-#pragma omp for schedule(static)
-    for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, k_, walls, c);
-#pragma omp for schedule(static)
-    for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) momentum_pass(flow_, k_, soil, c);
-  }
-}
-
 void RightHandSide::evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) {
-  if (uses_packed()) evaluate_packed(soil, walls);
-  else if (k_.numerics.kernel == KernelShape::cubic_spline) evaluate_plain(CubicSpline{k_.h}, soil, walls, soil_cells, wall_cells);
+  if (k_.numerics.kernel == KernelShape::cubic_spline) evaluate_plain(CubicSpline{k_.h}, soil, walls, soil_cells, wall_cells);
   else evaluate_plain(WendlandC2{k_.h}, soil, walls, soil_cells, wall_cells);
 }
 

@@ -5,24 +5,16 @@
 
 #include "neighbours/cell_list.hpp"
 #include "particles/particles.hpp"
-#include "sph/cluster_list.hpp"
 #include "sph/flow_constants.hpp"
 #include "sph/kernel.hpp"
-#include "sph/packed.hpp"
-#include "sph/pair_loops.hpp"
 
 namespace talus {
 
-/// Evaluates rates of change. Gather loops only: every particle sums its own neighbours in the order of the cells, so the
-/// result has the same bits for any number of threads. The soil-soil sums come in two precisions; the double-precision loops are
-/// the oracle of the vectorised ones. Walls, the law of a point and all state are double in both.
+/// Evaluates rates of change in double precision, one pair after the other: the oracle of VectorisedFlow. Gather loops only:
+/// every particle sums its own neighbours in the order of the cells, so the result has the same bits for any number of threads.
 class RightHandSide {
  public:
   explicit RightHandSide(FlowConstants constants);
-
-  /// Finds the neighbours anew. Call it whenever the soil has been sorted, before evaluate(), and again before a particle goes
-  /// further than `way` [m] from where it is now. No particle has moved further than `way` since soil_cells was built.
-  void renew(const Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells, double way);
 
   /// Fills ax, ay, drho, dt** and the derived p, s**, gamma_dot of the active soil, and the extrapolated stress of the walls.
   /// With the elastic law it first returns t** to the yield surface.
@@ -43,10 +35,6 @@ class RightHandSide {
 
   template <class Kernel>
   void evaluate_plain(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
-  /// The mass form of continuity is there to repeat the paper; only the plain loops know it.
-  bool uses_packed() const { return k_.numerics.precision == Precision::single && k_.numerics.continuity == Continuity::volume; }
-  void pack(const Soil& soil);
-  void evaluate_packed(Soil& soil, WallParticles& walls);
   template <class Kernel>
   Rates soil_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const CellList& soil_cells) const;
   template <class Kernel>
@@ -64,7 +52,6 @@ class RightHandSide {
   FlowConstants k_;
   double tan_phi_wall_;
   std::vector<double> rho0_;  ///< by material [kg/m3]
-  PackedFlow flow_;
 };
 
 }  // namespace talus

@@ -6,6 +6,7 @@
 
 #include "neighbours/cell_list.hpp"
 #include "sph/right_hand_side.hpp"
+#include "sph/vectorised_flow.hpp"
 
 namespace talus::testing_support {
 
@@ -39,6 +40,15 @@ inline CellList sorted(Soil& soil, double reach) {
   for_each_real(soil, [&](const char*, auto& a) { permute(a, cells.order(), scratch); });
   permute(soil.material, cells.order(), ints), permute(soil.id, cells.order(), ints);
   return cells;
+}
+
+/// Evaluates once, by the loops that the constants ask for.
+inline void evaluate(const FlowConstants& k, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) {
+  if (!VectorisedFlow::serves(k.numerics)) return RightHandSide(k).evaluate(soil, walls, soil_cells, wall_cells);
+  VectorisedFlow flow(k, soil);
+  flow.renew(soil, walls, soil_cells, wall_cells, 0.0, 0.0);
+  flow.evaluate(soil, walls, 0.0, true);
+  flow.unpack(soil);
 }
 
 inline FlowConstants constants(double dx, Vec2 g = {0.0, -9.81}, std::vector<Material> materials = {{"a", 2000, 0.5, 700, 30}}) {

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+
+#include "random_soil.hpp"
 
 namespace talus {
 namespace {
@@ -20,10 +23,12 @@ void rates(Soil& s) {
   s.ax[0] = -s.x[0], s.ay[0] = -2 * s.vy[0];
   s.drho[0] = -s.x[0] * s.rho[0], s.dtxx[0] = -s.txx[0] + s.x[0];
 }
+using Step = void (*)(Soil&, StepStart&, double, const Evaluate&);
+constexpr Step rk2 = step_rk2, leapfrog = step_leapfrog;
+
 struct Errors {
   double x, y, rho, t;
 };
-template <class Step>
 Errors errors_after_one_second(Step step, int n) {
   Soil s = one_particle();
   StepStart start;
@@ -34,7 +39,6 @@ Errors errors_after_one_second(Step step, int n) {
           std::abs(s.txx[0] - txx)};
 }
 
-template <class Step>
 void expect_second_order(Step step) {
   const Errors coarse = errors_after_one_second(step, 200), fine = errors_after_one_second(step, 400);
   EXPECT_NEAR(std::log2(coarse.x / fine.x), 2.0, 0.1);
@@ -44,8 +48,8 @@ void expect_second_order(Step step) {
   EXPECT_LT(fine.x, 1e-4);
 }
 
-TEST(Integrator, Rk2IsOfSecondOrder) { expect_second_order(step_rk2); }
-TEST(Integrator, LeapfrogIsOfSecondOrder) { expect_second_order(step_leapfrog); }
+TEST(Integrator, Rk2IsOfSecondOrder) { expect_second_order(rk2); }
+TEST(Integrator, LeapfrogIsOfSecondOrder) { expect_second_order(leapfrog); }
 
 TEST(Integrator, EvaluationsPerStep) {
   Soil s = one_particle();
@@ -59,7 +63,7 @@ TEST(Integrator, EvaluationsPerStep) {
 }
 
 TEST(Integrator, FreeFallIsExact) {
-  for (const auto step : {step_rk2, step_leapfrog}) {
+  for (const auto step : {rk2, leapfrog}) {
     Soil s = one_particle();
     StepStart start;
     const Evaluate gravity = [](Soil& soil) { soil.ax[0] = 0, soil.ay[0] = -9.81, soil.drho[0] = 0, soil.dtxx[0] = 0; };
@@ -75,6 +79,51 @@ TEST(Integrator, InactiveParticlesStay) {
   StepStart start;
   step_rk2(s, start, 0.1, [](Soil&) {});
   EXPECT_EQ(s.y[0], 0.0);
+}
+
+/// A random soil over a wall after some steps, by id: by the plain loops, or by the vectorised ones.
+Soil after_steps(Integrator integrator, bool vectorised, double* way) {
+  using namespace testing_support;
+  const double dx = 0.1, dt = 1e-4;
+  FlowConstants k = constants(dx, {0.0, -9.81}, {{"a", 2000, 0.5, 700, 30}, {"b", 1900, 0.3, 100, 90}});
+  Soil soil = random_soil(14, 9, dx, 11, 2);
+  WallParticles walls = flat_walls(14, dx);
+  const CellList soil_cells = sorted(soil, 3 * k.h), wall_cells = sorted(walls, 3 * k.h);
+  VectorisedFlow flow(k, soil);
+  flow.renew(soil, walls, soil_cells, wall_cells, 0.0, 0.1 * k.h);
+  RightHandSide rhs(k);
+  StepStart start;
+  const Evaluate evaluate = [&](Soil& s) { rhs.evaluate(s, walls, soil_cells, wall_cells); };
+  const bool is_rk2 = integrator == Integrator::rk2;
+  for (int n = 0; n < 10; ++n) {
+    const Soil before = soil;
+    if (vectorised) {
+      const double claimed = is_rk2 ? step_rk2(flow, soil, walls, dt) : step_leapfrog(flow, soil, walls, dt);
+      double gone = 0.0;
+      for (std::size_t i = 0; i < soil.size(); ++i) gone = std::max(gone, norm(soil.position(i) - before.position(i)));
+      EXPECT_NEAR(claimed, gone, 1e-6 * gone);
+      *way = gone;
+    } else {
+      (is_rk2 ? rk2 : leapfrog)(soil, start, dt, evaluate);
+    }
+  }
+  return soil;
+}
+
+TEST(Integrator, VectorisedStepsEqualThePlainOnes) {
+  for (const auto integrator : {Integrator::rk2, Integrator::leapfrog}) {
+    double way = 0.0;
+    const Soil a = after_steps(integrator, false, &way), b = after_steps(integrator, true, &way);
+    ASSERT_GT(way, 1e-4);
+    for_each_state(a, [&](const std::string& name, const auto& expected) {
+      double size = 0.0;
+      for (const double value : expected) size = std::max(size, std::abs(value));
+      for_each_state(b, [&](const std::string& other, const auto& actual) {
+        if (name != other) return;
+        for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(actual[i], expected[i], 3e-6 * size) << name << " of " << i;
+      });
+    });
+  }
 }
 
 }  // namespace

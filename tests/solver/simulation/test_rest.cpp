@@ -15,14 +15,14 @@ using namespace testing_support;
 
 /// Root mean square of (q - rho0 g depth) over the largest value; q is the pressure, or the vertical stress.
 double profile_error(const Simulation& simulation, double height, bool vertical_stress = false) {
-  const Soil& s = simulation.soil();
+  const Frame f = simulation.frame();
   double sum = 0;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    const double expected = 2000 * 9.81 * (height - s.y[i]);
-    const double actual = vertical_stress ? -s.syy[i] : s.p[i];
+  for (std::size_t i = 0; i < f.n_soil; ++i) {
+    const double expected = 2000 * 9.81 * (height - f.position[i].y);
+    const double actual = vertical_stress ? -f.stress[i][1] : f.pressure[i];
     sum += (actual - expected) * (actual - expected);
   }
-  return std::sqrt(sum / static_cast<double>(s.size())) / (2000 * 9.81 * height);
+  return std::sqrt(sum / static_cast<double>(f.n_soil)) / (2000 * 9.81 * height);
 }
 
 double surface(const Soil& s) {
@@ -80,7 +80,7 @@ TEST(Rest, StressFreeStartSettlesToTheSameVerticalStress) {
   m.walls.slip = WallSlip::free_slip;  // rough side walls would carry part of the weight, as in a silo
   m.time.end = 2.0;
   Simulation simulation(m, plan_particles(m));
-  EXPECT_EQ(simulation.soil().p[0], 0.0);
+  EXPECT_EQ(simulation.frame().pressure[0], 0.0);
   while (!simulation.finished()) simulation.step(m.time.end);
   // Squeezed from one side, the elastic law carries part of the weight as a deviator: the vertical stress balances gravity.
   EXPECT_LT(profile_error(simulation, 1.0, true), 0.05);
@@ -95,8 +95,9 @@ TEST(Rest, LayersOfTwoDensitiesStayPut) {
   while (!simulation.finished()) simulation.step(m.time.end);
   EXPECT_LT(max_speed(simulation.soil()), 0.03);
   double p_bottom = 0, n = 0;
-  for (std::size_t i = 0; i < simulation.soil().size(); ++i)
-    if (simulation.soil().y[i] < 0.1) p_bottom += simulation.soil().p[i], ++n;
+  const Frame f = simulation.frame();
+  for (std::size_t i = 0; i < f.n_soil; ++i)
+    if (f.position[i].y < 0.1) p_bottom += f.pressure[i], ++n;
   EXPECT_NEAR(p_bottom / n, 9.81 * (1600 * 0.5 + 2400 * 0.45), 0.03 * 9.81 * 2000);
 }
 

@@ -27,9 +27,7 @@ TEST(DensityDiffusion, ConservesMassForEqualVolumes) {
   CellList no_cells;
   no_cells.build({}, {}, 1.0);
   const CellList cells = sorted(soil, 2 * k.h);
-  RightHandSide rhs(k);
-  rhs.renew(soil, none, cells, no_cells, 0.0);
-  rhs.evaluate(soil, none, cells, no_cells);
+  evaluate(k, soil, none, cells, no_cells);
   double sum = 0, size = 0;
   for (const double d : soil.drho) sum += d, size += std::abs(d);
   EXPECT_GT(size, 0.0);

@@ -153,9 +153,7 @@ void compare_with_oracle(const Option& option, Precision precision, double toler
   WallParticles walls = flat_walls(14, dx);
   const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
   const Rates expected = brute_force(k, soil, walls);
-  RightHandSide rhs(k);
-  rhs.renew(soil, walls, soil_cells, wall_cells, 0.0);
-  rhs.evaluate(soil, walls, soil_cells, wall_cells);
+  evaluate(k, soil, walls, soil_cells, wall_cells);
   expect_close(soil.drho, expected.drho, tolerance, "drho");
   expect_close(soil.p, expected.p, tolerance, "p");
   expect_close(soil.gamma_dot, expected.gamma_dot, tolerance, "gamma_dot");
@@ -192,9 +190,7 @@ Soil evaluated(Soil soil, FlowConstants k, Precision precision = Precision::full
   CellList no_cells;
   no_cells.build({}, {}, 1.0);
   const CellList cells = sorted(soil, 2 * k.h);
-  RightHandSide rhs(k);
-  rhs.renew(soil, none, cells, no_cells, 0.0);
-  rhs.evaluate(soil, none, cells, no_cells);
+  evaluate(k, soil, none, cells, no_cells);
   CellList unused;
   std::vector<std::uint32_t> place(soil.size());
   for (std::uint32_t i = 0; i < soil.size(); ++i) place[static_cast<std::size_t>(soil.id[i])] = i;

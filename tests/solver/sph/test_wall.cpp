@@ -61,9 +61,7 @@ Soil sliding(WallSlip slip, double phi_wall) {
   }
   WallParticles walls = flat_walls(20, dx);
   const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
-  RightHandSide rhs(k);
-  rhs.renew(soil, walls, soil_cells, wall_cells, 0.0);
-  rhs.evaluate(soil, walls, soil_cells, wall_cells);
+  evaluate(k, soil, walls, soil_cells, wall_cells);
   return soil;
 }
 

@@ -1,0 +1,114 @@
+#include "sph/vectorised_flow.hpp"
+
+#include <algorithm>
+
+namespace talus {
+
+namespace {
+
+constexpr std::size_t chunk_size = 256;  ///< particles that a thread takes at a time
+
+std::size_t chunks_of(std::size_t n) { return (n + chunk_size - 1) / chunk_size; }
+Chunk chunk(std::size_t c, std::size_t n) { return {c * chunk_size, std::min((c + 1) * chunk_size, n)}; }
+
+/// Calls f(array of Soil, array of packed floats, stride, offset) for all that evaluations write.
+template <class S, class P, class F>
+void for_each_pair(S& soil, P& packed, F&& f) {
+  f(soil.ax, packed.ax, 1, 0), f(soil.ay, packed.ay, 1, 0), f(soil.drho, packed.drho, 1, 0);
+  f(soil.dtxx, packed.dtxx, 1, 0), f(soil.dtyy, packed.dtyy, 1, 0), f(soil.dtxy, packed.dtxy, 1, 0);
+  f(soil.gamma_dot, packed.gamma_dot, 1, 0);
+  f(soil.sxx, packed.stress, 4, 0), f(soil.syy, packed.stress, 4, 1), f(soil.sxy, packed.stress, 4, 2), f(soil.p, packed.stress, 4, 3);
+}
+
+}  // namespace
+
+VectorisedFlow::VectorisedFlow(FlowConstants constants, const Soil& soil) : k_(std::move(constants)) {
+  flow_.soil.resize(soil.size());
+  pack(soil);
+}
+
+void VectorisedFlow::unpack(Soil& soil) const {
+  const std::size_t n = flow_.soil.size();
+  for_each_pair(soil, flow_.soil, [&](auto& array, const auto& packed, std::size_t stride, std::size_t offset) {
+    array.resize(n);
+    for (std::size_t i = 0; i < n; ++i) array[i] = static_cast<double>(packed[stride * i + offset]);
+  });
+}
+
+void VectorisedFlow::pack(const Soil& soil) {
+  for_each_pair(soil, flow_.soil, [&](const auto& array, auto& packed, std::size_t stride, std::size_t offset) {
+    for (std::size_t i = 0; i < array.size(); ++i) packed[stride * i + offset] = static_cast<float>(array[i]);
+  });
+}
+
+void VectorisedFlow::swap(std::size_t i, std::size_t j) {
+  Soil none;
+  for_each_pair(none, flow_.soil, [&](auto&, auto& packed, std::size_t stride, std::size_t offset) {
+    std::swap(packed[stride * i + offset], packed[stride * j + offset]);
+  });
+}
+
+void VectorisedFlow::permute(std::span<const std::uint32_t> order) {
+  for_each_packed_rate(flow_.soil, [&](const char*, auto& array) { talus::permute(array, order, scratch_); });
+}
+
+void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells, double moved,
+                           double way) {
+  const std::size_t lanes = cluster_size();
+  const double reach = 2.0 * k_.h + way;
+  const auto lists = [](const std::vector<std::uint32_t>& first) {
+    return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size;
+  };
+  flow_.fixed = FixedPoint::covering(soil_cells.box(), k_.h);
+  flow_.soil_clusters = clusters(soil_cells, lanes), flow_.wall_clusters = clusters(wall_cells, lanes);
+  flow_.walls.resize(walls.size());
+  flow_.soil_soil.chunks.resize(lists(flow_.soil_clusters)), flow_.soil_wall.chunks.resize(lists(flow_.soil_clusters));
+  flow_.wall_soil.chunks.resize(lists(flow_.wall_clusters));
+  pack_walls(flow_, walls);
+  const auto n_soil = static_cast<std::uint32_t>(soil.size()), n_wall = static_cast<std::uint32_t>(walls.size());
+  const PackedSoil& s = flow_.soil;
+  const PackedWalls& w = flow_.walls;
+#pragma omp parallel
+  {
+    pack_active(soil, 0.0);
+    // Sources may have moved since the cells were built; from now on targets and sources both may move by `way`.
+#pragma omp for schedule(static)
+    for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) {
+      list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, soil_cells, s.motion, reach + way, moved, n_soil, c, flow_.soil_soil);
+      list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, wall_cells, w.place, reach, 0.0, n_wall, c, flow_.soil_wall);
+    }
+#pragma omp for schedule(static)
+    for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c)
+      list_neighbours(flow_.fixed, flow_.wall_clusters, w.place, soil_cells, s.motion, reach, moved, n_soil, c, flow_.wall_soil);
+  }
+}
+
+/// Inside a parallel region.
+void VectorisedFlow::pack_active(const Soil& soil, double ahead) {
+  const std::size_t n = soil.n_active;
+#pragma omp for schedule(static)
+  for (std::size_t c = 0; c < chunks_of(n); ++c) pack_soil(flow_, k_, soil, ahead, chunk(c, n));
+}
+
+void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bool keep) {
+#pragma omp parallel
+  {
+    pack_active(soil, ahead);
+#pragma omp for schedule(static)
+    for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) stress_pass(flow_, k_, soil, ahead, keep, c);
+#pragma omp for schedule(static)
+    for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, k_, walls, c);
+#pragma omp for schedule(static)
+    for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) momentum_pass(flow_, k_, c);
+  }
+}
+
+double VectorisedFlow::move(Soil& soil, double dt, bool middle) const {
+  const std::size_t n = soil.n_active;
+  double farthest = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : farthest)
+  for (std::size_t c = 0; c < chunks_of(n); ++c) farthest = std::max(farthest, move_soil(flow_, soil, dt, middle, chunk(c, n)));
+  return farthest;
+}
+
+}  // namespace talus

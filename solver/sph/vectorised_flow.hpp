@@ -1,0 +1,51 @@
+#pragma once
+// The right-hand side at speed: packed particles, lists of neighbours that last some steps, vectors of single precision. State
+// and its summation over time stay in double. RightHandSide is its oracle.
+
+#include <span>
+
+#include "neighbours/cell_list.hpp"
+#include "sph/pair_loops.hpp"
+
+namespace talus {
+
+class VectorisedFlow {
+ public:
+  /// @param soil  its initial pressure and stress are taken over; its arrays of rates and derived values stay untouched ever after
+  VectorisedFlow(FlowConstants constants, const Soil& soil);
+
+  /// Can these loops do it? The mass form of continuity is there to repeat the paper; only RightHandSide knows it.
+  static bool serves(const Numerics& n) { return n.precision == Precision::single && n.continuity == Continuity::volume; }
+
+  /// Finds the neighbours anew. Call it when the soil has been sorted, and again before a particle goes further than `way` [m]
+  /// from where it is now. No particle has moved further than `moved` [m] since soil_cells was built.
+  void renew(const Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells, double moved, double way);
+
+  /// Rates of the soil, and the extrapolated stress of the walls, at the state that the present rates lead to after `ahead` [s];
+  /// the state itself stays. The elastic stress is returned to the yield surface there; `keep`: in the state as well.
+  void evaluate(Soil& soil, WallParticles& walls, double ahead, bool keep);
+
+  /// Moves the state on by dt [s] at the present rates; positions with the velocities of the last evaluation (`middle`) or with
+  /// the mean of the old and the new ones.
+  /// @returns the farthest way of a particle [m]
+  double move(Soil& soil, double dt, bool middle) const;
+
+  Vec2 acceleration(std::size_t i) const { return {flow_.soil.ax[i], flow_.soil.ay[i]}; }
+
+  /// Writes rates, p, s**, gamma_dot of the last evaluation into the arrays of `soil`, and takes them over from there.
+  void unpack(Soil& soil) const;
+  void pack(const Soil& soil);
+
+  /// Follows the soil when two particles change places, and when all are sorted.
+  void swap(std::size_t i, std::size_t j);
+  void permute(std::span<const std::uint32_t> order);
+
+ private:
+  void pack_active(const Soil& soil, double ahead);
+
+  FlowConstants k_;
+  PackedFlow flow_;
+  std::vector<float> scratch_;
+};
+
+}  // namespace talus
