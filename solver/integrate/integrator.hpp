@@ -28,8 +28,7 @@ void step_rk2(Soil& soil, StepStart& start, double dt, const Evaluate& evaluate)
 void step_leapfrog(Soil& soil, StepStart& start, double dt, const Evaluate& evaluate);
 
 /// The same steps by the vectorised loops, which look ahead without touching the state.
-/// @returns the farthest way of a particle [m]
-double step_rk2(VectorisedFlow& flow, Soil& soil, WallParticles& walls, double dt);
-double step_leapfrog(VectorisedFlow& flow, Soil& soil, WallParticles& walls, double dt);
+Motion step_rk2(VectorisedFlow& flow, Soil& soil, WallParticles& walls, double dt);
+Motion step_leapfrog(VectorisedFlow& flow, Soil& soil, WallParticles& walls, double dt);
 
 }  // namespace talus

@@ -202,10 +202,14 @@ void Simulation::step(double until) {
     rhs_.filter_density(soil_, walls_, soil_cells_, wall_cells_);
   const bool rk2 = numerics.integrator == Integrator::rk2;
   if (fast_) {
-    travelled_ += rk2 ? step_rk2(*fast_, soil_, walls_, dt) : step_leapfrog(*fast_, soil_, walls_, dt);
+    const Motion motion = rk2 ? step_rk2(*fast_, soil_, walls_, dt) : step_leapfrog(*fast_, soil_, walls_, dt);
+    travelled_ += motion.way, max_acceleration_ = motion.acceleration;
   } else {
     const Evaluate evaluate = [&](Soil& soil) { rhs_.evaluate(soil, walls_, soil_cells_, wall_cells_); };
     rk2 ? step_rk2(soil_, start_, dt, evaluate) : step_leapfrog(soil_, start_, dt, evaluate);
+    double a2 = 0.0;
+    for (std::size_t i = 0; i < soil_.n_active; ++i) a2 = std::max(a2, soil_.ax[i] * soil_.ax[i] + soil_.ay[i] * soil_.ay[i]);
+    max_acceleration_ = std::sqrt(a2);
   }
   evaluations_ += rk2 ? 2 : 1;
   ++steps_;
@@ -215,27 +219,36 @@ void Simulation::step(double until) {
   if (steps_ % penetration_interval == 0) count_penetrations();
 }
 
+void Simulation::report_divergence(double fastest2) const {
+  std::int32_t bad = std::numeric_limits<std::int32_t>::max();
+  for (std::size_t i = 0; i < soil_.n_active; ++i) {
+    const bool sound = std::isfinite(norm2(soil_.position(i)) + soil_.rho[i]) && soil_.rho[i] > 0.0 && norm2(soil_.velocity(i)) < fastest2;
+    if (!sound) bad = std::min(bad, soil_.id[i]);
+  }
+  const Vec2 start = origin_.at(static_cast<std::size_t>(bad));
+  throw DivergedError("the run diverged at step " + std::to_string(steps_) + ", time " + std::to_string(time_) + " s: particle " +
+                          std::to_string(bad) + ", which started at (" + std::to_string(start.x) + ", " + std::to_string(start.y) +
+                          ") m, is no longer finite or faster than 10 times sound; try a smaller time step",
+                      steps_, time_, bad);
+}
+
 /// Finite and plausible? Then the extremes for the next step and the rest rule are brought up to date.
 void Simulation::check() {
-  constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
-  double v2 = 0.0, a2 = 0.0, d2 = 0.0;
-  std::int32_t bad = none;
-#pragma omp parallel for schedule(static) reduction(max : v2, a2, d2) reduction(min : bad)
-  for (std::size_t i = 0; i < soil_.n_active; ++i) {
-    const double v2_i = norm2(soil_.velocity(i)), a2_i = norm2(fast_ ? fast_->acceleration(i) : Vec2{soil_.ax[i], soil_.ay[i]});
-    const double d2_i = norm2(soil_.position(i) - Vec2{soil_.x_sorted[i], soil_.y_sorted[i]});
-    const bool sound = std::isfinite(d2_i + v2_i + a2_i + soil_.rho[i]) && soil_.rho[i] > 0.0 && v2_i < 100.0 * bounds_.c * bounds_.c;
-    if (!sound) bad = std::min(bad, soil_.id[i]);
-    v2 = std::max(v2, v2_i), a2 = std::max(a2, a2_i), d2 = std::max(d2, d2_i);
+  const double *x = soil_.x.data(), *y = soil_.y.data(), *vx = soil_.vx.data(), *vy = soil_.vy.data(), *rho = soil_.rho.data();
+  const float *x_sorted = soil_.x_sorted.data(), *y_sorted = soil_.y_sorted.data();
+  const std::size_t n = soil_.n_active;
+  // Zero times anything finite is zero, so that `unsound` stays zero unless something is not.
+  double v2 = 0.0, d2 = 0.0, lightest = 1e300, unsound = 0.0;
+#pragma omp parallel for simd schedule(static) reduction(max : v2, d2) reduction(min : lightest) reduction(+ : unsound)
+  for (std::size_t i = 0; i < n; ++i) {
+    const double dx = x[i] - static_cast<double>(x_sorted[i]), dy = y[i] - static_cast<double>(y_sorted[i]);
+    const double v2_i = vx[i] * vx[i] + vy[i] * vy[i], d2_i = dx * dx + dy * dy;
+    v2 = std::max(v2, v2_i), d2 = std::max(d2, d2_i), lightest = std::min(lightest, rho[i]);
+    unsound += 0.0 * (v2_i + d2_i + rho[i]);
   }
-  if (bad != none) {
-    const Vec2 x = origin_[static_cast<std::size_t>(bad)];
-    throw DivergedError("the run diverged at step " + std::to_string(steps_) + ", time " + std::to_string(time_) + " s: particle " +
-                            std::to_string(bad) + ", which started at (" + std::to_string(x.x) + ", " + std::to_string(x.y) +
-                            ") m, is no longer finite or faster than 10 times sound; try a smaller time step",
-                        steps_, time_, bad);
-  }
-  max_speed_ = std::sqrt(v2), max_acceleration_ = std::sqrt(a2), moved_ = std::sqrt(d2);
+  const double fastest2 = 100.0 * bounds_.c * bounds_.c;
+  if (unsound != 0.0 || !(lightest > 0.0) || !(v2 < fastest2)) report_divergence(fastest2);
+  max_speed_ = std::sqrt(v2), moved_ = std::sqrt(d2);
   peak_speed_ = std::max(peak_speed_, max_speed_);
   if (model_.time.stop_at_rest && steps_ % rest_interval == 0) {
     if (rms_speed(soil_) >= model_.time.stop_at_rest->speed) slow_since_ = -1.0;

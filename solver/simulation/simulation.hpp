@@ -70,6 +70,7 @@ class Simulation {
   void renew(double dt);
   void retire_departed();
   void check();
+  [[noreturn]] void report_divergence(double fastest2) const;
   void count_penetrations();
 
   Model model_;

@@ -89,10 +89,10 @@ HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& 
   }
 }
 
-HWY_ATTR double move_soil_loop(const PackedFlow& f, Soil& soil, double step, bool middle, Chunk chunk) {
+HWY_ATTR Motion move_soil_loop(const PackedFlow& f, Soil& soil, double step, bool middle, Chunk chunk) {
   const D d;
   const Wide dt = each(step), half = each(0.5);
-  V farthest = hn::Zero(d);
+  V farthest = hn::Zero(d), hardest = hn::Zero(d);
   for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
     const std::size_t count = std::min(chunk.end - i, lanes);
     const auto move = [&](std::vector<double>& array, const std::vector<float>& rate) HWY_ATTR {
@@ -107,11 +107,13 @@ HWY_ATTR double move_soil_loop(const PackedFlow& f, Soil& soil, double step, boo
     if (!middle) vx = narrow(mean_vx), vy = narrow(mean_vy);
     store(load(soil.x.data() + i, count) + dt * (middle ? wide(vx) : mean_vx), soil.x.data() + i, count);
     store(load(soil.y.data() + i, count) + dt * (middle ? wide(vy) : mean_vy), soil.y.data() + i, count);
-    V v2 = hn::MulAdd(vx, vx, hn::Mul(vy, vy));
-    if (count < lanes) v2 = hn::IfThenElseZero(hn::FirstN(d, count), v2);
-    farthest = hn::Max(farthest, v2);
+    const V ax = hn::LoadU(d, f.soil.ax.data() + i), ay = hn::LoadU(d, f.soil.ay.data() + i);
+    V v2 = hn::MulAdd(vx, vx, hn::Mul(vy, vy)), a2 = hn::MulAdd(ax, ax, hn::Mul(ay, ay));
+    if (count < lanes) v2 = hn::IfThenElseZero(hn::FirstN(d, count), v2), a2 = hn::IfThenElseZero(hn::FirstN(d, count), a2);
+    farthest = hn::Max(farthest, v2), hardest = hn::Max(hardest, a2);
   }
-  return step * std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, farthest))));
+  const auto root = [&](V squares) HWY_ATTR { return std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, squares)))); };
+  return {step * root(farthest), root(hardest)};
 }
 
 struct BoxI {
@@ -187,7 +189,7 @@ void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double a
   HWY_DYNAMIC_DISPATCH(pack_soil_loop)(f, k, soil, ahead, chunk);
 }
 
-double move_soil(const PackedFlow& f, Soil& soil, double dt, bool middle, Chunk chunk) {
+Motion move_soil(const PackedFlow& f, Soil& soil, double dt, bool middle, Chunk chunk) {
   return HWY_DYNAMIC_DISPATCH(move_soil_loop)(f, soil, dt, middle, chunk);
 }
 

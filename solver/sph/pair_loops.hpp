@@ -44,9 +44,14 @@ void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& wall
 /// Second pass over chunk c of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included.
 void momentum_pass(PackedFlow& f, const FlowConstants& k, std::size_t c);
 
+/// Extremes of a step.
+struct Motion {
+  double way = 0.0;           ///< farthest that a particle went [m]
+  double acceleration = 0.0;  ///< largest, of the last evaluation [m/s2]
+};
+
 /// Moves soil particles on by dt [s] at the present rates; positions with the velocities of the last evaluation (`middle`) or
 /// with the mean of the old and the new ones.
-/// @returns the farthest way [m]
-double move_soil(const PackedFlow& f, Soil& soil, double dt, bool middle, Chunk chunk);
+Motion move_soil(const PackedFlow& f, Soil& soil, double dt, bool middle, Chunk chunk);
 
 }  // namespace talus

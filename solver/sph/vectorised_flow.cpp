@@ -103,12 +103,15 @@ void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bo
   }
 }
 
-double VectorisedFlow::move(Soil& soil, double dt, bool middle) const {
+Motion VectorisedFlow::move(Soil& soil, double dt, bool middle) const {
   const std::size_t n = soil.n_active;
-  double farthest = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : farthest)
-  for (std::size_t c = 0; c < chunks_of(n); ++c) farthest = std::max(farthest, move_soil(flow_, soil, dt, middle, chunk(c, n)));
-  return farthest;
+  double way = 0.0, acceleration = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : way, acceleration)
+  for (std::size_t c = 0; c < chunks_of(n); ++c) {
+    const Motion m = move_soil(flow_, soil, dt, middle, chunk(c, n));
+    way = std::max(way, m.way), acceleration = std::max(acceleration, m.acceleration);
+  }
+  return {way, acceleration};
 }
 
 }  // namespace talus

@@ -27,10 +27,7 @@ class VectorisedFlow {
 
   /// Moves the state on by dt [s] at the present rates; positions with the velocities of the last evaluation (`middle`) or with
   /// the mean of the old and the new ones.
-  /// @returns the farthest way of a particle [m]
-  double move(Soil& soil, double dt, bool middle) const;
-
-  Vec2 acceleration(std::size_t i) const { return {flow_.soil.ax[i], flow_.soil.ay[i]}; }
+  Motion move(Soil& soil, double dt, bool middle) const;
 
   /// Writes rates, p, s**, gamma_dot of the last evaluation into the arrays of `soil`, and takes them over from there.
   void unpack(Soil& soil) const;
