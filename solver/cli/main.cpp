@@ -1,11 +1,17 @@
 // talus: one verb a file; errors become exit codes here and nowhere else.
 
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 
 #include "cli/verbs.hpp"
 #include "cli/version.hpp"
+#include "sph/pair_loops.hpp"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 namespace {
 
@@ -19,10 +25,15 @@ int report(talus::Exit code, const std::string& text) {
 int main(int argc, char** argv) {
   using talus::Exit;
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error with a message, not a sudden death
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);  // what large arrays no longer need goes back to the system
+#endif
   CLI::App app{"Talus: how far will it run, and how sure are we?", "talus"};
   app.set_version_flag("--version", talus::cli::version_text());
   app.require_subcommand(1);
   app.footer("Exit codes: 0 ok, 1 internal, 2 usage, 3 bad case, 4 diverged, 5 input/output, 6 stopped with a checkpoint, 7 too many failed runs");
+  if (const char* simd = std::getenv("TALUS_SIMD"); simd && *simd && !talus::limit_pair_loops(simd))
+    return report(Exit::usage, "TALUS_SIMD must be AVX2 or SSE4 (or unset: the best that the processor has)");
   talus::cli::Action action;
   talus::cli::add_validate(app, action);
   talus::cli::add_run(app, action);
@@ -31,6 +42,7 @@ int main(int argc, char** argv) {
   talus::cli::add_stats(app, action);
   talus::cli::add_plot(app, action);
   talus::cli::add_schema(app, action);
+  talus::cli::add_bench(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

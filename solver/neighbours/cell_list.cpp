@@ -15,7 +15,6 @@ void CellList::build(std::span<const Real> x, std::span<const Real> y, double re
   const std::size_t n = x.size();
   inverse_reach_ = 1.0 / reach;
   order_.resize(n);
-  cell_of_.resize(n);
   if (n == 0) {
     box_ = {};
     columns_ = rows_ = 1;
@@ -32,13 +31,11 @@ void CellList::build(std::span<const Real> x, std::span<const Real> y, double re
   rows_ = cells(box_.height() * inverse_reach_, max_rows);
   columns_ = cells(box_.width() * across * inverse_reach_, max_cells / rows_);
   starts_.assign(static_cast<std::size_t>(columns_ * rows_) + 1, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    cell_of_[i] = static_cast<std::uint32_t>(row(y[i]) * columns_ + column(x[i]));
-    ++starts_[cell_of_[i] + 1];
-  }
+  const auto cell_of = [&](std::size_t i) { return static_cast<std::size_t>(row(y[i]) * columns_ + column(x[i])); };
+  for (std::size_t i = 0; i < n; ++i) ++starts_[cell_of(i) + 1];
   for (std::size_t c = 1; c < starts_.size(); ++c) starts_[c] += starts_[c - 1];
   // Counting sort, stable; `starts_` is used as the running cursor and shifted back afterwards.
-  for (std::size_t i = 0; i < n; ++i) order_[starts_[cell_of_[i]]++] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < n; ++i) order_[starts_[cell_of(i)]++] = static_cast<std::uint32_t>(i);
   for (std::size_t c = starts_.size() - 1; c > 0; --c) starts_[c] = starts_[c - 1];
   starts_[0] = 0;
 }

@@ -2,9 +2,13 @@
 // Linked-list cells (Hockney & Eastwood 1988) over points stored in cell order, so that the candidates around a place are a
 // few contiguous index ranges.
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "math/vec2.hpp"
@@ -87,16 +91,17 @@ class CellList {
   double inverse_reach_ = 1.0;
   std::int64_t columns_ = 1, rows_ = 1;
   std::vector<std::uint32_t> starts_ = {0, 0};  ///< first place of each cell, row by row; one more at the end
-  std::vector<std::uint32_t> order_, cell_of_;
+  std::vector<std::uint32_t> order_;
 };
 
-/// values[k] <- values[order[k]], through a scratch vector that keeps its memory.
+/// values[k] <- values[order[k]], through scratch memory that arrays of every kind share and that is kept.
 template <class T>
-void permute(std::vector<T>& values, std::span<const std::uint32_t> order, std::vector<T>& scratch) {
-  scratch.resize(values.size());
-  for (std::size_t k = 0; k < order.size(); ++k) scratch[k] = values[order[k]];
-  for (std::size_t k = order.size(); k < values.size(); ++k) scratch[k] = values[k];
-  values.swap(scratch);
+void permute(std::vector<T>& values, std::span<const std::uint32_t> order, std::vector<double>& scratch) {
+  static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= sizeof(double));
+  scratch.resize(std::max(scratch.size(), order.size()));
+  auto* bytes = reinterpret_cast<std::byte*>(scratch.data());
+  for (std::size_t k = 0; k < order.size(); ++k) std::memcpy(bytes + k * sizeof(T), &values[order[k]], sizeof(T));
+  std::memcpy(values.data(), bytes, order.size() * sizeof(T));
 }
 
 }  // namespace talus

@@ -34,7 +34,10 @@ StepBounds step_bounds(const Model& model, const FlowConstants& k) {
 
 Soil make_soil(const Model& model, const FlowConstants& k, const std::vector<SoilPoint>& points, const std::vector<double>& tan_phi) {
   Soil soil;
-  for_each_real(soil, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
+  const auto make = [&](const char*, auto& array) { array.assign(points.size(), 0.0); };
+  const bool vectorised = VectorisedFlow::serves(model.numerics);
+  for_each_state(soil, make);
+  if (!vectorised) for_each_rate(soil, make), for_each_derived(soil, make);
   soil.material.resize(points.size());
   soil.id.resize(points.size());
   soil.n_active = points.size();
@@ -47,9 +50,7 @@ Soil make_soil(const Model& model, const FlowConstants& k, const std::vector<Soi
     soil.rho[i] = k.laws[material].eos.density(p);
     soil.m[i] = m.rho0 * model.dx * model.dx;
     soil.tan_phi[i] = tan_phi.empty() ? std::tan(m.phi) : tan_phi[i];
-    soil.p[i] = p;
-    const Sym2 s = cauchy(p, {});
-    soil.sxx[i] = s.xx, soil.syy[i] = s.yy;
+    if (!vectorised) soil.p[i] = p, soil.sxx[i] = soil.syy[i] = -p;
     soil.material[i] = points[i].material;
     soil.id[i] = static_cast<std::int32_t>(i);
   }
@@ -109,13 +110,14 @@ Simulation::Simulation(const Model& model, const ParticlePlan& plan, std::vector
       bounds_(step_bounds(model, rhs_.constants())),
       max_acceleration_(norm(model.g)),
       height_(fall_height(model)) {
-  for (const SoilPoint& p : plan.soil) origin_.push_back(p.x);
+  const Box box = bounding_box(model.slide);
+  origin_box_ = {box.lo, std::max(box.width(), box.height()) / static_cast<double>(1 << 30)};
+  origin_.reserve(plan.soil.size());
+  for (const SoilPoint& p : plan.soil)
+    origin_.push_back({static_cast<std::int32_t>(std::lround((p.x.x - origin_box_.lo.x) / origin_box_.quantum)),
+                       static_cast<std::int32_t>(std::lround((p.x.y - origin_box_.lo.y) / origin_box_.quantum))});
   soil_.x_sorted.resize(soil_.size()), soil_.y_sorted.resize(soil_.size());
-  if (VectorisedFlow::serves(model.numerics)) {
-    fast_.emplace(rhs_.constants(), soil_);
-    const auto release = [](const char*, auto& array) { array = {}; };
-    for_each_rate(soil_, release), for_each_derived(soil_, release);
-  }
+  if (VectorisedFlow::serves(model.numerics)) fast_.emplace(rhs_.constants(), soil_);
   wall_cells_.build(walls_.x, walls_.y, 2.0 * rhs_.constants().h);
   const auto order = wall_cells_.order();
   for (auto* array : {&walls_.x, &walls_.y, &walls_.nx, &walls_.ny, &walls_.depth}) permute(*array, order, scratch_);
@@ -144,11 +146,11 @@ void Simulation::sort() {
   const auto order = soil_cells_.order();
   const auto apply = [&](const char*, auto& array) { permute(array, order, scratch_); };
   for_each_state(soil_, apply);
-  if (fast_) fast_->permute(order);
+  if (fast_) fast_->permute(order, scratch_);
   else for_each_rate(soil_, apply);
-  permute(soil_.x_sorted, order, scratch_float_), permute(soil_.y_sorted, order, scratch_float_);
-  permute(soil_.material, order, scratch_int_);
-  permute(soil_.id, order, scratch_int_);
+  permute(soil_.x_sorted, order, scratch_), permute(soil_.y_sorted, order, scratch_);
+  permute(soil_.material, order, scratch_);
+  permute(soil_.id, order, scratch_);
   moved_ = 0.0;
 }
 
@@ -165,12 +167,15 @@ void Simulation::renew(double dt) {
 /// Neighbours are sought from where a particle is in mid-step to where the others stood when they were sorted.
 void Simulation::find_neighbours(double dt) {
   const double ahead = 0.5 * dt * max_speed_;
+  Stopwatch watch;
   if (moved_ < 0.0 || moved_ + ahead > skin(fast_.has_value()) * rhs_.constants().h) {
     sort();
+    watch.lap(times_.sort);
     renew(dt);
   } else if (fast_ && travelled_ + ahead > way_) {
     renew(dt);
   }
+  watch.lap(times_.lists);
 }
 
 /// Soil that left through an open end stops taking part: it is swapped behind the active ones and keeps its last state.
@@ -198,12 +203,16 @@ void Simulation::step(double until) {
   const double dt = choose_step(until);
   const Numerics& numerics = model_.numerics;
   find_neighbours(dt);
+  Stopwatch watch;
   if (numerics.density_filter == DensityFilter::shepard && steps_ > 0 && steps_ % numerics.filter_interval == 0)
     rhs_.filter_density(soil_, walls_, soil_cells_, wall_cells_);
   const bool rk2 = numerics.integrator == Integrator::rk2;
+  double evaluating = 0.0;
   if (fast_) {
+    const double before = fast_->times().total();
     const Motion motion = rk2 ? step_rk2(*fast_, soil_, walls_, dt) : step_leapfrog(*fast_, soil_, walls_, dt);
     travelled_ += motion.way, max_acceleration_ = motion.acceleration;
+    evaluating = fast_->times().total() - before;
   } else {
     const Evaluate evaluate = [&](Soil& soil) { rhs_.evaluate(soil, walls_, soil_cells_, wall_cells_); };
     rk2 ? step_rk2(soil_, start_, dt, evaluate) : step_leapfrog(soil_, start_, dt, evaluate);
@@ -217,6 +226,16 @@ void Simulation::step(double until) {
   check();
   retire_departed();
   if (steps_ % penetration_interval == 0) count_penetrations();
+  watch.lap(times_.update);
+  times_.update -= evaluating;
+}
+
+StageTimes Simulation::times() const {
+  StageTimes t = times_;
+  if (!fast_) return t;
+  const StageTimes& passes = fast_->times();
+  t.update += passes.update, t.gradient += passes.gradient, t.walls += passes.walls, t.momentum += passes.momentum;
+  return t;
 }
 
 void Simulation::report_divergence(double fastest2) const {
@@ -225,7 +244,7 @@ void Simulation::report_divergence(double fastest2) const {
     const bool sound = std::isfinite(norm2(soil_.position(i)) + soil_.rho[i]) && soil_.rho[i] > 0.0 && norm2(soil_.velocity(i)) < fastest2;
     if (!sound) bad = std::min(bad, soil_.id[i]);
   }
-  const Vec2 start = origin_.at(static_cast<std::size_t>(bad));
+  const Vec2 start = origin(bad);
   throw DivergedError("the run diverged at step " + std::to_string(steps_) + ", time " + std::to_string(time_) + " s: particle " +
                           std::to_string(bad) + ", which started at (" + std::to_string(start.x) + ", " + std::to_string(start.y) +
                           ") m, is no longer finite or faster than 10 times sound; try a smaller time step",
@@ -285,6 +304,11 @@ HistoryRow Simulation::history_row() const {
   return {time_, steps_, farthest(soil_) - left, centre_of_mass(soil_).x - left, kinetic_energy(soil_), max_speed_};
 }
 
+Vec2 Simulation::origin(std::int32_t id) const {
+  const auto& at = origin_.at(static_cast<std::size_t>(id));
+  return origin_box_.lo + origin_box_.quantum * Vec2{static_cast<double>(at[0]), static_cast<double>(at[1])};
+}
+
 Frame Simulation::frame() const {
   Frame f;
   f.time = time_, f.step = steps_, f.n_soil = soil_.size();
@@ -297,7 +321,7 @@ Frame Simulation::frame() const {
   const Soil& derived = fast_ ? unpacked : soil_;
   for (std::size_t i = 0; i < soil_.size(); ++i) {
     const auto k = static_cast<std::size_t>(soil_.id[i]);
-    f.position[k] = soil_.position(i), f.displacement[k] = soil_.position(i) - origin_[k], f.velocity[k] = soil_.velocity(i);
+    f.position[k] = soil_.position(i), f.displacement[k] = soil_.position(i) - origin(soil_.id[i]), f.velocity[k] = soil_.velocity(i);
     f.density[k] = soil_.rho[i], f.pressure[k] = derived.p[i];
     f.phi[k] = std::atan(soil_.tan_phi[i]), f.shear_rate[k] = derived.gamma_dot[i];
     const Sym2 s = derived.stress(i);

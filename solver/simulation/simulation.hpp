@@ -1,6 +1,7 @@
 #pragma once
 // A deterministic run: particles made from a model, stepped to the end, read off as frames, history and result.
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -54,6 +55,9 @@ class Simulation {
   /// Everything but wall clock, threads, ending and field, which the caller knows.
   RunResult result() const;
 
+  /// Where the time of the steps went; only the vectorised loops tell their passes apart.
+  StageTimes times() const;
+
   /// For checkpoints: restore(state()) goes on with the same bits.
   State state() const;
   /// @throws IoError when the state does not belong to this model
@@ -64,6 +68,7 @@ class Simulation {
 
  private:
   double choose_step(double until) const;
+  Vec2 origin(std::int32_t id) const;
   void find_neighbours(double dt);
   void sort();
   void build_cells();
@@ -81,11 +86,10 @@ class Simulation {
   std::optional<VectorisedFlow> fast_;     ///< unset: rhs_ evaluates
   CellList soil_cells_, wall_cells_;
   StepStart start_;
-  std::vector<Vec2> origin_;               ///< starting position by id [m]
+  FixedPoint origin_box_;
+  std::vector<std::array<std::int32_t, 2>> origin_;  ///< starting position by id [quanta of origin_box_]
   std::vector<std::uint8_t> penetrated_;   ///< by id: ever seen behind the wall
   std::vector<double> scratch_;
-  std::vector<float> scratch_float_;
-  std::vector<std::int32_t> scratch_int_;
   StepBounds bounds_;
   double time_ = 0.0, peak_speed_ = 0.0, max_speed_ = 0.0, max_acceleration_ = 0.0;
   double moved_ = -1.0;                    ///< largest displacement since the last sort [m]; < 0: sort before the next step
@@ -93,6 +97,7 @@ class Simulation {
   double slow_since_ = -1.0;               ///< time since when the slide has been slower than the rest speed; < 0: it is not
   double height_ = 0.0;
   std::int64_t steps_ = 0, evaluations_ = 0;
+  StageTimes times_;
 };
 
 }  // namespace talus

@@ -130,6 +130,13 @@ HWY_INLINE BoxI box_of(const float* groups, std::size_t count) {
   return box;
 }
 
+/// At least n entries, without the doubling that would cost memory.
+inline void make_room(std::vector<std::uint32_t>& places, std::size_t n) {
+  if (places.size() >= n) return;
+  places.reserve(n + n / 16);
+  places.resize(n + n / 16);
+}
+
 HWY_ATTR void list_chunk(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets, const CellList& cells,
                          std::span<const float> sources, double distance, double moved, std::uint32_t nowhere, std::size_t chunk, ClusterList& list) {
   const D d;
@@ -147,7 +154,7 @@ HWY_ATTR void list_chunk(const FixedPoint& fixed, std::span<const std::uint32_t>
     const Box region{metres(box.x_lo - search, box.y_lo - search), metres(box.x_hi + search, box.y_hi + search)};
     const VI x_lo = hn::Set(di, box.x_lo), x_hi = hn::Set(di, box.x_hi), y_lo = hn::Set(di, box.y_lo), y_hi = hn::Set(di, box.y_hi);
     cells.for_ranges(region, [&](std::size_t from, std::size_t to) HWY_ATTR {
-      if (out.places.size() < used + (to - from) + 2 * lanes) out.places.resize(2 * (used + (to - from)) + 2 * lanes);
+      make_room(out.places, used + (to - from) + 2 * lanes);
       for (std::size_t j = from; j < to; j += lanes) {
         V xj, yj, u, v;
         hn::LoadInterleaved4(d, sources.data() + 4 * j, xj, yj, u, v);
@@ -162,10 +169,10 @@ HWY_ATTR void list_chunk(const FixedPoint& fixed, std::span<const std::uint32_t>
         used += hn::CountTrue(di, chosen);
       }
     });
-    if (out.places.size() < used + ClusterList::block) out.places.resize(2 * used + ClusterList::block);
+    make_room(out.places, used + ClusterList::block);
     while (used % ClusterList::block != 0) out.places[used++] = nowhere;
   }
-  if (out.places.size() < used + ClusterList::block) out.places.resize(used + ClusterList::block);
+  make_room(out.places, used + ClusterList::block);
   for (std::size_t b = 0; b < ClusterList::block; ++b) out.places[used + b] = nowhere;
   for (std::size_t c = end; c <= begin + ClusterList::chunk_size; ++c) out.at[c - begin] = static_cast<std::uint32_t>(used);
 }

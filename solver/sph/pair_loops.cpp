@@ -439,6 +439,17 @@ HWY_EXPORT(wall_stress_dispatch);
 HWY_EXPORT(momentum_dispatch);
 HWY_EXPORT(target_name);
 
+bool limit_pair_loops(const std::string& name) {
+#if HWY_ARCH_X86
+  // The better a set, the lower its bit.
+  if (name == "AVX2") hwy::DisableTargets(HWY_AVX2 - 1);
+  if (name == "SSE4") hwy::DisableTargets(HWY_SSE4 - 1);
+  return name == "AVX2" || name == "SSE4";
+#else
+  return name.empty();
+#endif
+}
+
 const char* pair_loops_target() { return HWY_DYNAMIC_DISPATCH(target_name)(); }
 
 void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t c) {

@@ -3,6 +3,7 @@
 // double-precision loops in right_hand_side.cpp are its oracle.
 
 #include <span>
+#include <string>
 
 #include "particles/particles.hpp"
 #include "sph/cluster_list.hpp"
@@ -24,6 +25,9 @@ struct PackedFlow {
 std::size_t cluster_size();
 /// Name of the instruction set that the loops use on this processor: "AVX2", "AVX3_ZEN4", ...
 const char* pair_loops_target();
+/// Keeps the loops from using anything better than "AVX2" or "SSE4", to compare.
+/// @returns false for another name
+bool limit_pair_loops(const std::string& name);
 
 /// Packs position, velocity and density of soil particles as they will be after `ahead` [s] at the present rates.
 void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk);

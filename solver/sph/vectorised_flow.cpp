@@ -24,7 +24,12 @@ void for_each_pair(S& soil, P& packed, F&& f) {
 
 VectorisedFlow::VectorisedFlow(FlowConstants constants, const Soil& soil) : k_(std::move(constants)) {
   flow_.soil.resize(soil.size());
-  pack(soil);
+  for (std::size_t i = 0; i < soil.size(); ++i) {
+    const double p = k_.laws[static_cast<std::size_t>(soil.material[i])].eos.pressure(soil.rho[i]);
+    float* stress = flow_.soil.stress.data() + 4 * i;
+    stress[3] = static_cast<float>(k_.numerics.tension_cutoff ? without_tension(p) : p);
+    stress[0] = stress[1] = -stress[3];
+  }
 }
 
 void VectorisedFlow::unpack(Soil& soil) const {
@@ -48,8 +53,8 @@ void VectorisedFlow::swap(std::size_t i, std::size_t j) {
   });
 }
 
-void VectorisedFlow::permute(std::span<const std::uint32_t> order) {
-  for_each_packed_rate(flow_.soil, [&](const char*, auto& array) { talus::permute(array, order, scratch_); });
+void VectorisedFlow::permute(std::span<const std::uint32_t> order, std::vector<double>& scratch) {
+  for_each_packed_rate(flow_.soil, [&](const char*, auto& array) { talus::permute(array, order, scratch); });
 }
 
 void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells, double moved,
@@ -91,16 +96,24 @@ void VectorisedFlow::pack_active(const Soil& soil, double ahead) {
 }
 
 void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bool keep) {
+  Stopwatch watch;
 #pragma omp parallel
   {
     pack_active(soil, ahead);
+#pragma omp master
+    watch.lap(times_.update);
 #pragma omp for schedule(static)
     for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) stress_pass(flow_, k_, soil, ahead, keep, c);
+#pragma omp master
+    watch.lap(times_.gradient);
 #pragma omp for schedule(static)
     for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, k_, walls, c);
+#pragma omp master
+    watch.lap(times_.walls);
 #pragma omp for schedule(static)
     for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) momentum_pass(flow_, k_, c);
   }
+  watch.lap(times_.momentum);
 }
 
 Motion VectorisedFlow::move(Soil& soil, double dt, bool middle) const {

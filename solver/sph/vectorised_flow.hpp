@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "math/stopwatch.hpp"
 #include "neighbours/cell_list.hpp"
 #include "sph/pair_loops.hpp"
 
@@ -11,7 +12,8 @@ namespace talus {
 
 class VectorisedFlow {
  public:
-  /// @param soil  its initial pressure and stress are taken over; its arrays of rates and derived values stay untouched ever after
+  /// Starts with no rates and with the pressure of the soil's density. The soil's own arrays of rates and derived values are
+  /// never used.
   VectorisedFlow(FlowConstants constants, const Soil& soil);
 
   /// Can these loops do it? The mass form of continuity is there to repeat the paper; only RightHandSide knows it.
@@ -25,6 +27,9 @@ class VectorisedFlow {
   /// the state itself stays. The elastic stress is returned to the yield surface there; `keep`: in the state as well.
   void evaluate(Soil& soil, WallParticles& walls, double ahead, bool keep);
 
+  /// Time spent in the passes so far.
+  const StageTimes& times() const { return times_; }
+
   /// Moves the state on by dt [s] at the present rates; positions with the velocities of the last evaluation (`middle`) or with
   /// the mean of the old and the new ones.
   Motion move(Soil& soil, double dt, bool middle) const;
@@ -35,14 +40,14 @@ class VectorisedFlow {
 
   /// Follows the soil when two particles change places, and when all are sorted.
   void swap(std::size_t i, std::size_t j);
-  void permute(std::span<const std::uint32_t> order);
+  void permute(std::span<const std::uint32_t> order, std::vector<double>& scratch);
 
  private:
   void pack_active(const Soil& soil, double ahead);
 
   FlowConstants k_;
   PackedFlow flow_;
-  std::vector<float> scratch_;
+  StageTimes times_;
 };
 
 }  // namespace talus

@@ -36,9 +36,8 @@ inline CellList sorted(Soil& soil, double reach) {
   CellList cells;
   cells.build(soil.x, soil.y, reach);
   std::vector<double> scratch;
-  std::vector<std::int32_t> ints;
   for_each_real(soil, [&](const char*, auto& a) { permute(a, cells.order(), scratch); });
-  permute(soil.material, cells.order(), ints), permute(soil.id, cells.order(), ints);
+  permute(soil.material, cells.order(), scratch), permute(soil.id, cells.order(), scratch);
   return cells;
 }
 

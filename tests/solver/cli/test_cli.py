@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 import h5py
 import jsonschema
@@ -22,6 +23,7 @@ import jsonschema
 TALUS, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
 SLOPE = SOURCE / "solver/cases/illustrative.json"
 COARSE = ["--set", "particle_spacing_m=0.8", "--set", "time.end_s=3", "--set", "time.snapshot_times_s=[1,2]"]
+PROCESSOR = pathlib.Path("/proc/cpuinfo").read_text()
 ENVIRONMENT = dict(os.environ, OMP_NUM_THREADS="1", OMP_WAIT_POLICY="passive")
 
 
@@ -142,6 +144,34 @@ class Basics(Directory):
         self.assertNotEqual(talus("schema", "cas").returncode, 0)
 
 
+    def test_an_unknown_instruction_set_is_2(self):
+        with unittest.mock.patch.dict(ENVIRONMENT, TALUS_SIMD="MMX"):
+            done = talus("validate", SLOPE)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("TALUS_SIMD", done.stderr)
+
+    def test_bench_prints_one_json_value(self):
+        done = talus("bench", "--json", "--seconds", 0.05, "--sizes", "2000,1000", "--threads", "1,2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        bench = json.loads(done.stdout)
+        self.assertEqual(len(bench["runs"]), 6)  # the base; another size, threads, integrator, yield, precision
+        for run in bench["runs"]:
+            for key in ("particles", "threads", "integrator", "yield", "precision", "simd", "evaluations_per_second_per_core",
+                        "particle_steps_per_second_per_core", "bytes_per_particle"):
+                self.assertIn(key, run)
+            self.assertGreater(run["evaluations_per_second_per_core"], 0)
+            if run["precision"] == "single":
+                self.assertAlmostEqual(sum(run["share"].values()), 1.0)
+            factor = 2 if run["integrator"] == "rk2" else 1
+            self.assertAlmostEqual(run["evaluations_per_second_per_core"] / run["particle_steps_per_second_per_core"], factor)
+        self.assertAlmostEqual(bench["runs"][0]["particles"], 2000, delta=40)
+        self.assertEqual({run["integrator"] for run in bench["runs"]}, {"rk2", "leapfrog"})
+        table = talus("bench", "--seconds", 0.05, "--sizes", "1000", "--threads", "1")
+        self.assertEqual(len(table.stdout.splitlines()), 3 + 4)
+        self.assertEqual(talus("bench", "--sizes", "1").returncode, 2)
+        self.assertEqual(talus("bench", self.case(title=3)).returncode, 3)
+
+
 class Run(Directory):
     def test_writes_what_the_contract_names(self):
         result = self.run_ok("a")
@@ -175,6 +205,20 @@ class Run(Directory):
         for threads in (2, 3):
             self.assertEqual(self.run_ok(f"t{threads}", "--threads", threads)["digest"], one["digest"])
         self.assertEqual(self.run_ok("s", "--set", "time.snapshot_times_s=[]")["digest"], one["digest"])
+
+    @unittest.skipUnless("avx2" in PROCESSOR, "this processor has no AVX2")
+    def test_avx2_gives_the_same_bits_as_anything_better(self):
+        best = self.run_ok("best")
+        with unittest.mock.patch.dict(ENVIRONMENT, TALUS_SIMD="AVX2"):
+            self.assertEqual(self.run_ok("avx2")["digest"], best["digest"])
+        with unittest.mock.patch.dict(ENVIRONMENT, TALUS_SIMD="SSE4"):  # other rounding: no fused multiply-add
+            other = self.run_ok("sse4")
+        self.assertAlmostEqual(other["influence_zone_m"], best["influence_zone_m"], delta=0.01)
+
+    def test_both_precisions_reach_the_same_front(self):
+        single, double = (self.run_ok(name, "--set", f"numerics.precision={name}") for name in ("single", "double"))
+        self.assertAlmostEqual(single["influence_zone_m"], double["influence_zone_m"], delta=0.01)
+        self.assertNotEqual(single["digest"], double["digest"])
 
     def test_seeds_realizations_and_the_median_differ_and_repeat(self):
         digests = [self.run_ok(name, *arguments)["digest"] for name, arguments in

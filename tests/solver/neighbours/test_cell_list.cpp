@@ -78,7 +78,8 @@ TEST(CellList, EmptyCloud) {
 }
 
 TEST(Permute, FollowsTheOrderAndKeepsTheTail) {
-  std::vector<int> v{10, 11, 12, 13}, scratch;
+  std::vector<int> v{10, 11, 12, 13};
+  std::vector<double> scratch;
   permute(v, std::vector<std::uint32_t>{2, 0, 1}, scratch);
   EXPECT_EQ(v, (std::vector<int>{12, 10, 11, 13}));
 }
