@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <numeric>
+#include <string>
 
 #include "random_soil.hpp"
 
@@ -262,6 +263,34 @@ TEST(VectorisedFlow, ListsReachAsFarAsParticlesMayHaveGone) {
   expect_close(soil.drho, plain.drho, 2e-6, "drho");
   expect_close(soil.ax, plain.ax, 2e-6, "ax");
   expect_close(walls.p, plain_walls.p, 2e-6, "wall p");
+}
+
+TEST(VectorisedFlow, EqualsThePlainLoopsAtWallsOfEveryKind) {
+  for (const auto slip : {WallSlip::no_slip, WallSlip::friction, WallSlip::free_slip})
+    for (const auto contact : {WallContact::always, WallContact::approaching})
+      for (const auto kernel : {KernelShape::cubic_spline, KernelShape::wendland_c2}) {
+        FlowConstants k = constants(0.1, {1.3, -9.81}, {{"a", 2000, 0.5, 700, 30}, {"b", 1900, 0.5, 100, 90}});
+        k.walls.slip = slip, k.walls.contact = contact, k.walls.phi = 0.1, k.numerics.kernel = kernel;
+        Soil soil = random_soil(30, 8, k.dx, 47, 2);
+        WallParticles walls = flat_walls(30, k.dx);
+        for (std::size_t w = 0; w < walls.size(); ++w) walls.nx[w] = -0.28, walls.ny[w] = 0.96;  // sloping
+        const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
+        Soil plain = soil;
+        WallParticles plain_walls = walls;
+        RightHandSide(k).evaluate(plain, plain_walls, soil_cells, wall_cells);
+        k.numerics.precision = Precision::single;
+        evaluate(k, soil, walls, soil_cells, wall_cells);
+        for_each_rate(plain, [&](const std::string& name, const auto& expected) {
+          for_each_rate(soil, [&](const std::string& other, const auto& actual) {
+            if (name == other) expect_close(actual, expected, 3e-6, name.c_str());
+          });
+        });
+        for_each_wall_real(plain_walls, [&](const std::string& name, const auto& expected) {
+          for_each_wall_real(walls, [&](const std::string& other, const auto& actual) {
+            if (name == other) expect_close(actual, expected, 2e-5, name.c_str());  // a smooth wall turns pressure into shear
+          });
+        });
+      }
 }
 
 TEST(VectorisedFlow, FollowsParticlesThatChangePlaces) {

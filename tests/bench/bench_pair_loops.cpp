@@ -1,0 +1,119 @@
+// The loops of one evaluation, each by itself, over 12,800 particles of disordered soil. Items are soil particles.
+
+#include <benchmark/benchmark.h>
+
+#include "integrate/integrator.hpp"
+#include "random_soil.hpp"
+
+namespace talus {
+namespace {
+
+using namespace testing_support;
+
+/// Everything that the loops need, laid out as VectorisedFlow does it.
+struct Bed {
+  static constexpr double way_h = 0.05;  ///< what a particle may move before the lists are renewed [h]
+
+  explicit Bed(KernelShape kernel = KernelShape::cubic_spline) {
+    k.numerics.precision = Precision::single, k.numerics.kernel = kernel;
+    soil = random_soil(160, 80, k.dx, 3);
+    for (auto* t : {&soil.txx, &soil.tyy, &soil.txy})
+      for (double& value : *t) value *= 0.1;  // some yield, some do not
+    walls = flat_walls(160, k.dx);
+    soil_cells = sorted(soil, 2.3 * k.h), wall_cells = sorted(walls, 2.0 * k.h);
+    const auto chunks = [](const auto& first) { return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size; };
+    f.fixed = FixedPoint::covering(soil_cells.box(), k.h);
+    f.soil.resize(soil.size()), f.walls.resize(walls.size());
+    f.soil_clusters = clusters(soil_cells, cluster_size()), f.wall_clusters = clusters(wall_cells, cluster_size());
+    f.soil_soil.chunks.resize(chunks(f.soil_clusters)), f.soil_wall.chunks.resize(chunks(f.soil_clusters));
+    f.wall_soil.chunks.resize(chunks(f.wall_clusters));
+    pack_walls(f, walls);
+    pack_soil(f, k, soil, 0.0, {0, soil.size()});
+    list();
+  }
+  void list() {
+    const double reach = 2.0 * k.h + way_h * k.h;
+    const auto n_soil = static_cast<std::uint32_t>(soil.size()), n_wall = static_cast<std::uint32_t>(walls.size());
+    for (std::size_t c = 0; c < f.soil_soil.chunks.size(); ++c) {
+      list_neighbours(f.fixed, f.soil_clusters, f.soil.motion, soil_cells, f.soil.motion, reach + way_h * k.h, 0.3 * k.h, n_soil, c, f.soil_soil);
+      list_neighbours(f.fixed, f.soil_clusters, f.soil.motion, wall_cells, f.walls.place, reach, 0.0, n_wall, c, f.soil_wall);
+    }
+    for (std::size_t c = 0; c < f.wall_soil.chunks.size(); ++c)
+      list_neighbours(f.fixed, f.wall_clusters, f.walls.place, soil_cells, f.soil.motion, reach, 0.3 * k.h, n_soil, c, f.wall_soil);
+  }
+  void stress() {
+    for (std::size_t c = 0; c < f.soil_soil.chunks.size(); ++c) stress_pass(f, k, soil, 0.0, false, c);
+  }
+  void report(benchmark::State& state) const {
+    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * soil.size()));
+    state.SetLabel(pair_loops_target());
+  }
+
+  FlowConstants k = constants(0.1);
+  Soil soil;
+  WallParticles walls;
+  CellList soil_cells, wall_cells;
+  PackedFlow f;
+};
+
+void Pack(benchmark::State& state) {
+  Bed bed;
+  for (auto _ : state) pack_soil(bed.f, bed.k, bed.soil, 1e-5, {0, bed.soil.size()});
+  bed.report(state);
+}
+void Sort(benchmark::State& state) {
+  Bed bed;
+  std::vector<double> scratch;
+  for (auto _ : state) {
+    bed.soil_cells.build(bed.soil.x, bed.soil.y, 2.3 * bed.k.h);
+    for_each_state(bed.soil, [&](const char*, auto& array) { permute(array, bed.soil_cells.order(), scratch); });
+  }
+  bed.report(state);
+}
+void Lists(benchmark::State& state) {
+  Bed bed;
+  for (auto _ : state) bed.list();
+  bed.report(state);
+}
+void StressPass(benchmark::State& state) {
+  Bed bed(static_cast<KernelShape>(state.range(0)));
+  for (auto _ : state) bed.stress();
+  bed.report(state);
+}
+void WallStressPass(benchmark::State& state) {
+  Bed bed;
+  bed.stress();
+  for (auto _ : state)
+    for (std::size_t c = 0; c < bed.f.wall_soil.chunks.size(); ++c) wall_stress_pass(bed.f, bed.k, bed.walls, c);
+  bed.report(state);
+}
+void MomentumPass(benchmark::State& state) {
+  Bed bed(static_cast<KernelShape>(state.range(0)));
+  bed.stress();
+  for (auto _ : state)
+    for (std::size_t c = 0; c < bed.f.soil_soil.chunks.size(); ++c) momentum_pass(bed.f, bed.k, c);
+  bed.report(state);
+}
+void Move(benchmark::State& state) {
+  Bed bed;
+  for (auto _ : state) benchmark::DoNotOptimize(move_soil(bed.f, bed.soil, 0.0, true, {0, bed.soil.size()}));
+  bed.report(state);
+}
+void PlainEvaluation(benchmark::State& state) {
+  Bed bed;
+  RightHandSide rhs(bed.k);
+  for (auto _ : state) rhs.evaluate(bed.soil, bed.walls, bed.soil_cells, bed.wall_cells);
+  bed.report(state);
+}
+
+BENCHMARK(Sort);
+BENCHMARK(Lists);
+BENCHMARK(Pack);
+BENCHMARK(StressPass)->ArgName("wendland")->Arg(0)->Arg(1);
+BENCHMARK(WallStressPass);
+BENCHMARK(MomentumPass)->ArgName("wendland")->Arg(0)->Arg(1);
+BENCHMARK(Move);
+BENCHMARK(PlainEvaluation);
+
+}  // namespace
+}  // namespace talus
