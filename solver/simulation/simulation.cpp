@@ -205,25 +205,23 @@ void Simulation::step(double until) {
   find_neighbours(dt);
   Stopwatch watch;
   if (numerics.density_filter == DensityFilter::shepard && steps_ > 0 && steps_ % numerics.filter_interval == 0)
-    rhs_.filter_density(soil_, walls_, soil_cells_, wall_cells_);
+    filter_density();
   const bool rk2 = numerics.integrator == Integrator::rk2;
   double evaluating = 0.0;
+  Motion motion;
   if (fast_) {
     const double before = fast_->times().total();
-    const Motion motion = rk2 ? step_rk2(*fast_, soil_, walls_, dt) : step_leapfrog(*fast_, soil_, walls_, dt);
-    travelled_ += motion.way, max_acceleration_ = motion.acceleration;
+    motion = rk2 ? step_rk2(*fast_, soil_, walls_, dt) : step_leapfrog(*fast_, soil_, walls_, dt);
     evaluating = fast_->times().total() - before;
   } else {
     const Evaluate evaluate = [&](Soil& soil) { rhs_.evaluate(soil, walls_, soil_cells_, wall_cells_); };
     rk2 ? step_rk2(soil_, start_, dt, evaluate) : step_leapfrog(soil_, start_, dt, evaluate);
-    double a2 = 0.0;
-    for (std::size_t i = 0; i < soil_.n_active; ++i) a2 = std::max(a2, soil_.ax[i] * soil_.ax[i] + soil_.ay[i] * soil_.ay[i]);
-    max_acceleration_ = std::sqrt(a2);
+    motion = plain_motion();
   }
   evaluations_ += rk2 ? 2 : 1;
   ++steps_;
   time_ = until - time_ <= dt ? until : time_ + dt;
-  check();
+  check(motion);
   retire_departed();
   if (steps_ % penetration_interval == 0) count_penetrations();
   watch.lap(times_.update);
@@ -251,23 +249,28 @@ void Simulation::report_divergence(double fastest2) const {
                       steps_, time_, bad);
 }
 
-/// Finite and plausible? Then the extremes for the next step and the rest rule are brought up to date.
-void Simulation::check() {
-  const double *x = soil_.x.data(), *y = soil_.y.data(), *vx = soil_.vx.data(), *vy = soil_.vy.data(), *rho = soil_.rho.data();
-  const float *x_sorted = soil_.x_sorted.data(), *y_sorted = soil_.y_sorted.data();
-  const std::size_t n = soil_.n_active;
-  // Zero times anything finite is zero, so that `unsound` stays zero unless something is not.
-  double v2 = 0.0, d2 = 0.0, lightest = 1e300, unsound = 0.0;
-#pragma omp parallel for simd schedule(static) reduction(max : v2, d2) reduction(min : lightest) reduction(+ : unsound)
-  for (std::size_t i = 0; i < n; ++i) {
-    const double dx = x[i] - static_cast<double>(x_sorted[i]), dy = y[i] - static_cast<double>(y_sorted[i]);
-    const double v2_i = vx[i] * vx[i] + vy[i] * vy[i], d2_i = dx * dx + dy * dy;
-    v2 = std::max(v2, v2_i), d2 = std::max(d2, d2_i), lightest = std::min(lightest, rho[i]);
-    unsound += 0.0 * (v2_i + d2_i + rho[i]);
+/// What the vectorised loops find out on their way; they also know how far a particle went in the step.
+Motion Simulation::plain_motion() const {
+  Motion m;
+  for (std::size_t i = 0; i < soil_.n_active; ++i) {
+    const Vec2 sorted{static_cast<double>(soil_.x_sorted[i]), static_cast<double>(soil_.y_sorted[i])};
+    m.acceleration = std::max(m.acceleration, norm({soil_.ax[i], soil_.ay[i]}));
+    m.speed = std::max(m.speed, norm(soil_.velocity(i))), m.moved = std::max(m.moved, norm(soil_.position(i) - sorted));
+    m.sound = m.sound && std::isfinite(norm2(soil_.position(i)) + norm2(soil_.velocity(i)) + soil_.rho[i]) && soil_.rho[i] > 0.0;
   }
-  const double fastest2 = 100.0 * bounds_.c * bounds_.c;
-  if (unsound != 0.0 || !(lightest > 0.0) || !(v2 < fastest2)) report_divergence(fastest2);
-  max_speed_ = std::sqrt(v2), moved_ = std::sqrt(d2);
+  return m;
+}
+
+void Simulation::filter_density() {
+  rhs_.filter_density(soil_, walls_, soil_cells_, wall_cells_);
+  if (fast_) fast_->state_changed();
+}
+
+/// Finite and plausible? Then the extremes for the next step and the rest rule are brought up to date.
+void Simulation::check(const Motion& motion) {
+  if (const double fastest = 10.0 * bounds_.c; !motion.sound || !(motion.speed < fastest)) report_divergence(fastest * fastest);
+  max_speed_ = motion.speed, max_acceleration_ = motion.acceleration, moved_ = motion.moved;
+  travelled_ += motion.way;
   peak_speed_ = std::max(peak_speed_, max_speed_);
   if (model_.time.stop_at_rest && steps_ % rest_interval == 0) {
     if (rms_speed(soil_) >= model_.time.stop_at_rest->speed) slow_since_ = -1.0;

@@ -64,7 +64,10 @@ class Simulation {
   void restore(const State& state);
 
   /// For tests: lets them set velocities and densities before the first step.
-  Soil& mutable_soil() { return soil_; }
+  Soil& mutable_soil() {
+    if (fast_) fast_->state_changed();
+    return soil_;
+  }
 
  private:
   double choose_step(double until) const;
@@ -74,7 +77,9 @@ class Simulation {
   void build_cells();
   void renew(double dt);
   void retire_departed();
-  void check();
+  Motion plain_motion() const;
+  void filter_density();
+  void check(const Motion& motion);
   [[noreturn]] void report_divergence(double fastest2) const;
   void count_penetrations();
 

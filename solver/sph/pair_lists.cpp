@@ -62,58 +62,114 @@ HWY_INLINE V fixed_point(Wide x, double lo, double per_quantum) {
   return hn::BitCast(D(), hn::Combine(DI(), hn::DemoteTo(di, units.hi), hn::DemoteTo(di, units.lo)));
 }
 
-HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk) {
-  const D d;
-  const double per_quantum = 1.0 / f.fixed.quantum;
-  const Wide dt = each(ahead), one = each(1.0);
-  const Wide gx = each(k.g.x / (k.c_s * k.c_s)), gy = each(k.g.y / (k.c_s * k.c_s));
-  for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
-    const std::size_t count = std::min(chunk.end - i, lanes);
-    const auto rate = [&](const std::vector<float>& array) HWY_ATTR { return wide(hn::LoadU(d, array.data() + i)); };
-    const auto state = [&](const std::vector<double>& array) HWY_ATTR { return load(array.data() + i, count); };
+HWY_INLINE Wide max(Wide a, Wide b) { return {hn::Max(a.lo, b.lo), hn::Max(a.hi, b.hi)}; }
+HWY_INLINE Wide min(Wide a, Wide b) { return {hn::Min(a.lo, b.lo), hn::Min(a.hi, b.hi)}; }
+HWY_INLINE double largest(Wide a) { return hn::GetLane(hn::MaxOfLanes(Doubles(), hn::Max(a.lo, a.hi))); }
+HWY_INLINE double smallest(Wide a) { return hn::GetLane(hn::MinOfLanes(Doubles(), hn::Min(a.lo, a.hi))); }
+HWY_INLINE double total(Wide a) { return hn::GetLane(hn::SumOfLanes(Doubles(), hn::Add(a.lo, a.hi))); }
+
+/// What packing reads of the particles of one vector.
+struct StateV {
+  Wide x, y, vx, vy, rho;
+};
+
+/// Packs states as they are.
+struct Packer {
+  double per_quantum;
+  Wide gx, gy;
+
+  Packer(const PackedFlow& f, const FlowConstants& k)
+      : per_quantum(1.0 / f.fixed.quantum), gx(each(k.g.x / (k.c_s * k.c_s))), gy(each(k.g.y / (k.c_s * k.c_s))) {}
+
+  HWY_INLINE void pack(PackedFlow& f, const FlowConstants& k, const Soil& soil, const StateV& s, std::size_t i, std::size_t count) const {
+    const D d;
     HWY_ALIGN double rho0[lanes];
     HWY_ALIGN float material[lanes] = {};
     std::fill_n(rho0, lanes, k.laws[0].eos.rho0);
     if (k.laws.size() > 1)
       for (std::size_t l = 0; l < count; ++l)
         material[l] = static_cast<float>(soil.material[i + l]), rho0[l] = k.laws[static_cast<std::size_t>(soil.material[i + l])].eos.rho0;
+    const Wide q = s.rho / load(rho0, lanes) - each(1.0);
+    const Wide hydrostatic = gx * (s.x - each(f.fixed.lo.x)) + gy * (s.y - each(f.fixed.lo.y));
+    store_groups(fixed_point(s.x, f.fixed.lo.x, per_quantum), fixed_point(s.y, f.fixed.lo.y, per_quantum), narrow(s.vx), narrow(s.vy),
+                 f.soil.motion.data() + 4 * i, count);
+    store_groups(narrow(load(soil.m.data() + i, count) / s.rho), narrow(q - hydrostatic), narrow(s.rho), hn::Load(d, material),
+                 f.soil.density.data() + 4 * i, count);
+    store(narrow(q), f.soil.q.data() + i, count);
+  }
+};
+
+HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk) {
+  const D d;
+  const Packer packer(f, k);
+  const Wide dt = each(ahead);
+  for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
+    const std::size_t count = std::min(chunk.end - i, lanes);
+    const auto rate = [&](const std::vector<float>& array) HWY_ATTR { return wide(hn::LoadU(d, array.data() + i)); };
+    const auto state = [&](const std::vector<double>& array) HWY_ATTR { return load(array.data() + i, count); };
     const Wide vx = state(soil.vx), vy = state(soil.vy);
-    const Wide x = state(soil.x) + dt * vx, y = state(soil.y) + dt * vy;
-    const Wide rho = state(soil.rho) + dt * rate(f.soil.drho);
-    const Wide q = rho / load(rho0, lanes) - one;
-    const Wide hydrostatic = gx * (x - each(f.fixed.lo.x)) + gy * (y - each(f.fixed.lo.y));
-    store_groups(fixed_point(x, f.fixed.lo.x, per_quantum), fixed_point(y, f.fixed.lo.y, per_quantum), narrow(vx + dt * rate(f.soil.ax)),
-                 narrow(vy + dt * rate(f.soil.ay)), f.soil.motion.data() + 4 * i, count);
-    store_groups(narrow(state(soil.m) / rho), narrow(q - hydrostatic), narrow(rho), hn::Load(d, material), f.soil.density.data() + 4 * i, count);
-    hn::StoreU(narrow(q), d, f.soil.q.data() + i);
+    packer.pack(f, k, soil,
+                {state(soil.x) + dt * vx, state(soil.y) + dt * vy, vx + dt * rate(f.soil.ax), vy + dt * rate(f.soil.ay),
+                 state(soil.rho) + dt * rate(f.soil.drho)},
+                i, count);
   }
 }
 
-HWY_ATTR Motion move_soil_loop(const PackedFlow& f, Soil& soil, double step, bool middle, Chunk chunk) {
+HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double step, bool middle, Chunk chunk) {
   const D d;
-  const Wide dt = each(step), half = each(0.5);
-  V farthest = hn::Zero(d), hardest = hn::Zero(d);
+  const Packer packer(f, k);
+  const Wide dt = each(step), half = each(0.5), zero = each(0.0);
+  V way2 = hn::Zero(d), acceleration2 = hn::Zero(d);
+  Wide speed2 = zero, moved2 = zero, lightest = each(1e300), unsound = zero;
   for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
     const std::size_t count = std::min(chunk.end - i, lanes);
-    const auto move = [&](std::vector<double>& array, const std::vector<float>& rate) HWY_ATTR {
-      const Wide from = load(array.data() + i, count), to = from + dt * wide(hn::LoadU(d, rate.data() + i));
-      store(to, array.data() + i, count);
-      return half * (from + to);
-    };
-    const Wide mean_vx = move(soil.vx, f.soil.ax), mean_vy = move(soil.vy, f.soil.ay);
-    move(soil.rho, f.soil.drho), move(soil.txx, f.soil.dtxx), move(soil.tyy, f.soil.dtyy), move(soil.txy, f.soil.dtxy);
-    V x, y, vx, vy;
-    hn::LoadInterleaved4(d, f.soil.motion.data() + 4 * i, x, y, vx, vy);
-    if (!middle) vx = narrow(mean_vx), vy = narrow(mean_vy);
-    store(load(soil.x.data() + i, count) + dt * (middle ? wide(vx) : mean_vx), soil.x.data() + i, count);
-    store(load(soil.y.data() + i, count) + dt * (middle ? wide(vy) : mean_vy), soil.y.data() + i, count);
     const V ax = hn::LoadU(d, f.soil.ax.data() + i), ay = hn::LoadU(d, f.soil.ay.data() + i);
-    V v2 = hn::MulAdd(vx, vx, hn::Mul(vy, vy)), a2 = hn::MulAdd(ax, ax, hn::Mul(ay, ay));
-    if (count < lanes) v2 = hn::IfThenElseZero(hn::FirstN(d, count), v2), a2 = hn::IfThenElseZero(hn::FirstN(d, count), a2);
-    farthest = hn::Max(farthest, v2), hardest = hn::Max(hardest, a2);
+    const auto state = [&](const std::vector<double>& array) HWY_ATTR { return load(array.data() + i, count); };
+    const auto move = [&](std::vector<double>& array, Wide rate) HWY_ATTR {
+      const Wide to = load(array.data() + i, count) + dt * rate;
+      store(to, array.data() + i, count);
+      return to;
+    };
+    const auto move_with = [&](std::vector<double>& array, const std::vector<float>& rate) HWY_ATTR {
+      return move(array, wide(hn::LoadU(d, rate.data() + i)));
+    };
+    StateV s;
+    const Wide old_vx = state(soil.vx), old_vy = state(soil.vy);
+    s.vx = move(soil.vx, wide(ax)), s.vy = move(soil.vy, wide(ay));
+    s.rho = move_with(soil.rho, f.soil.drho);
+    move_with(soil.txx, f.soil.dtxx), move_with(soil.tyy, f.soil.dtyy), move_with(soil.txy, f.soil.dtxy);
+    Wide vx = half * (old_vx + s.vx), vy = half * (old_vy + s.vy);
+    if (middle) {
+      V x, y, middle_vx, middle_vy;
+      hn::LoadInterleaved4(d, f.soil.motion.data() + 4 * i, x, y, middle_vx, middle_vy);
+      vx = wide(middle_vx), vy = wide(middle_vy);
+    }
+    s.x = move(soil.x, vx), s.y = move(soil.y, vy);
+    packer.pack(f, k, soil, s, i, count);
+    const auto gone_since = [&](const std::vector<float>& from, Wide to) HWY_ATTR {
+      HWY_ALIGN float buffer[lanes] = {};
+      std::copy_n(from.data() + i, count, buffer);
+      return to - wide(hn::Load(d, buffer));
+    };
+    const Wide dx = gone_since(soil.x_sorted, s.x), dy = gone_since(soil.y_sorted, s.y);
+    const V vx_n = narrow(vx), vy_n = narrow(vy);
+    V way2_i = hn::MulAdd(vx_n, vx_n, hn::Mul(vy_n, vy_n)), acceleration2_i = hn::MulAdd(ax, ax, hn::Mul(ay, ay));
+    if (count < lanes) {
+      const M some = hn::FirstN(d, count);
+      way2_i = hn::IfThenElseZero(some, way2_i), acceleration2_i = hn::IfThenElseZero(some, acceleration2_i);
+      HWY_ALIGN double rho[lanes];
+      std::fill_n(rho, lanes, 1e300);
+      store(s.rho, rho, count);
+      s.rho = load(rho, lanes);
+    }
+    const Wide speed2_i = s.vx * s.vx + s.vy * s.vy, moved2_i = dx * dx + dy * dy;
+    way2 = hn::Max(way2, way2_i), acceleration2 = hn::Max(acceleration2, acceleration2_i);
+    speed2 = max(speed2, speed2_i), moved2 = max(moved2, moved2_i), lightest = min(lightest, s.rho);
+    unsound = unsound + zero * (speed2_i + moved2_i + s.rho);  // stays zero unless something is not finite
   }
   const auto root = [&](V squares) HWY_ATTR { return std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, squares)))); };
-  return {step * root(farthest), root(hardest)};
+  return {step * root(way2), root(acceleration2), std::sqrt(largest(speed2)), std::sqrt(largest(moved2)),
+          total(unsound) == 0.0 && smallest(lightest) > 0.0};
 }
 
 struct BoxI {
@@ -196,8 +252,8 @@ void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double a
   HWY_DYNAMIC_DISPATCH(pack_soil_loop)(f, k, soil, ahead, chunk);
 }
 
-Motion move_soil(const PackedFlow& f, Soil& soil, double dt, bool middle, Chunk chunk) {
-  return HWY_DYNAMIC_DISPATCH(move_soil_loop)(f, soil, dt, middle, chunk);
+Motion move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, bool middle, Chunk chunk) {
+  return HWY_DYNAMIC_DISPATCH(move_soil_loop)(f, k, soil, dt, middle, chunk);
 }
 
 void pack_walls(PackedFlow& f, const WallParticles& walls) {

@@ -2,6 +2,7 @@
 // The right-hand side in vectors of single precision (Highway, chosen for the processor at run time). The plain
 // double-precision loops in right_hand_side.cpp are its oracle.
 
+#include <algorithm>
 #include <span>
 #include <string>
 
@@ -48,14 +49,22 @@ void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& wall
 /// Second pass over chunk c of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included.
 void momentum_pass(PackedFlow& f, const FlowConstants& k, std::size_t c);
 
-/// Extremes of a step.
+/// What a step made of the particles.
 struct Motion {
-  double way = 0.0;           ///< farthest that a particle went [m]
+  double way = 0.0;           ///< farthest that one went [m]
   double acceleration = 0.0;  ///< largest, of the last evaluation [m/s2]
+  double speed = 0.0;         ///< largest, now [m/s]
+  double moved = 0.0;         ///< farthest from where one stood at the last sort [m]
+  bool sound = true;          ///< all finite, all densities positive
+
+  /// The extremes of two lots of particles.
+  Motion with(const Motion& b) const {
+    return {std::max(way, b.way), std::max(acceleration, b.acceleration), std::max(speed, b.speed), std::max(moved, b.moved), sound && b.sound};
+  }
 };
 
-/// Moves soil particles on by dt [s] at the present rates; positions with the velocities of the last evaluation (`middle`) or
-/// with the mean of the old and the new ones.
-Motion move_soil(const PackedFlow& f, Soil& soil, double dt, bool middle, Chunk chunk);
+/// Moves soil particles on by dt [s] at the present rates, positions with the velocities of the last evaluation (`middle`) or
+/// with the mean of the old and the new ones, and packs the outcome.
+Motion move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, bool middle, Chunk chunk);
 
 }  // namespace talus

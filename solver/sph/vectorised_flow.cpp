@@ -70,6 +70,7 @@ void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const C
   flow_.soil_soil.chunks.resize(lists(flow_.soil_clusters)), flow_.soil_wall.chunks.resize(lists(flow_.soil_clusters));
   flow_.wall_soil.chunks.resize(lists(flow_.wall_clusters));
   pack_walls(flow_, walls);
+  packed_now_ = true;
   const auto n_soil = static_cast<std::uint32_t>(soil.size()), n_wall = static_cast<std::uint32_t>(walls.size());
   const PackedSoil& s = flow_.soil;
   const PackedWalls& w = flow_.walls;
@@ -97,9 +98,11 @@ void VectorisedFlow::pack_active(const Soil& soil, double ahead) {
 
 void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bool keep) {
   Stopwatch watch;
+  const bool pack = ahead != 0.0 || !packed_now_;
+  packed_now_ = ahead == 0.0;
 #pragma omp parallel
   {
-    pack_active(soil, ahead);
+    if (pack) pack_active(soil, ahead);
 #pragma omp master
     watch.lap(times_.update);
 #pragma omp for schedule(static)
@@ -116,15 +119,14 @@ void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bo
   watch.lap(times_.momentum);
 }
 
-Motion VectorisedFlow::move(Soil& soil, double dt, bool middle) const {
+Motion VectorisedFlow::move(Soil& soil, double dt, bool middle) {
   const std::size_t n = soil.n_active;
-  double way = 0.0, acceleration = 0.0;
-#pragma omp parallel for schedule(static) reduction(max : way, acceleration)
-  for (std::size_t c = 0; c < chunks_of(n); ++c) {
-    const Motion m = move_soil(flow_, soil, dt, middle, chunk(c, n));
-    way = std::max(way, m.way), acceleration = std::max(acceleration, m.acceleration);
-  }
-  return {way, acceleration};
+  Motion motion;
+#pragma omp declare reduction(extremes : Motion : omp_out = omp_out.with(omp_in))
+#pragma omp parallel for schedule(static) reduction(extremes : motion)
+  for (std::size_t c = 0; c < chunks_of(n); ++c) motion = motion.with(move_soil(flow_, k_, soil, dt, middle, chunk(c, n)));
+  packed_now_ = true;
+  return motion;
 }
 
 }  // namespace talus

@@ -32,7 +32,10 @@ class VectorisedFlow {
 
   /// Moves the state on by dt [s] at the present rates; positions with the velocities of the last evaluation (`middle`) or with
   /// the mean of the old and the new ones.
-  Motion move(Soil& soil, double dt, bool middle) const;
+  Motion move(Soil& soil, double dt, bool middle);
+
+  /// Tells that something else than move() has changed the state since.
+  void state_changed() { packed_now_ = false; }
 
   /// Writes rates, p, s**, gamma_dot of the last evaluation into the arrays of `soil`, and takes them over from there.
   void unpack(Soil& soil) const;
@@ -47,6 +50,7 @@ class VectorisedFlow {
 
   FlowConstants k_;
   PackedFlow flow_;
+  bool packed_now_ = false;  ///< the present state is packed
   StageTimes times_;
 };
 

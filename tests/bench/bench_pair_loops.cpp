@@ -96,7 +96,7 @@ void MomentumPass(benchmark::State& state) {
 }
 void Move(benchmark::State& state) {
   Bed bed;
-  for (auto _ : state) benchmark::DoNotOptimize(move_soil(bed.f, bed.soil, 0.0, true, {0, bed.soil.size()}));
+  for (auto _ : state) benchmark::DoNotOptimize(move_soil(bed.f, bed.k, bed.soil, 0.0, true, {0, bed.soil.size()}));
   bed.report(state);
 }
 void PlainEvaluation(benchmark::State& state) {

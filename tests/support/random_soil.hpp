@@ -17,6 +17,7 @@ inline Soil random_soil(int nx, int ny, double dx, unsigned seed, int materials 
   const auto n = static_cast<std::size_t>(nx * ny);
   for_each_real(s, [&](const char*, auto& a) { a.assign(n, 0.0); });
   s.material.assign(n, 0), s.id.resize(n), s.n_active = n;
+  s.x_sorted.assign(n, 0.0f), s.y_sorted.assign(n, 0.0f);
   for (std::size_t i = 0; i < n; ++i) {
     const auto col = static_cast<double>(i % static_cast<std::size_t>(nx)), row = static_cast<double>(i / static_cast<std::size_t>(nx));
     s.x[i] = (col + 0.25 * u(engine)) * dx, s.y[i] = (row + 0.25 * u(engine)) * dx;

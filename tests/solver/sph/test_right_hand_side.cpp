@@ -255,6 +255,7 @@ TEST(VectorisedFlow, ListsReachAsFarAsParticlesMayHaveGone) {
   VectorisedFlow flow(k, soil);
   flow.renew(soil, walls, soil_cells, wall_cells, moved, way);
   displace(soil, way, 2);
+  flow.state_changed();
   Soil plain = soil;
   WallParticles plain_walls = walls;
   RightHandSide(k).evaluate(plain, plain_walls, soil_cells, wall_cells);
