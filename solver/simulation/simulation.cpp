@@ -179,10 +179,11 @@ void Simulation::find_neighbours(double dt) {
 }
 
 /// Soil that left through an open end stops taking part: it is swapped behind the active ones and keeps its last state.
-void Simulation::retire_departed() {
+void Simulation::retire_departed(const Motion& motion) {
   if (model_.terrain.closed) return;
   const double left = model_.terrain.left_wall ? -1e300 : model_.terrain.bed.front().x;
   const double right = model_.terrain.right_wall ? 1e300 : model_.terrain.bed.back().x;
+  if (motion.leftmost >= left && motion.rightmost <= right) return;
   for (std::size_t i = 0; i < soil_.n_active;) {
     if (soil_.x[i] >= left && soil_.x[i] <= right) {
       ++i;
@@ -222,7 +223,7 @@ void Simulation::step(double until) {
   ++steps_;
   time_ = until - time_ <= dt ? until : time_ + dt;
   check(motion);
-  retire_departed();
+  retire_departed(motion);
   if (steps_ % penetration_interval == 0) count_penetrations();
   watch.lap(times_.update);
   times_.update -= evaluating;
@@ -256,6 +257,7 @@ Motion Simulation::plain_motion() const {
     const Vec2 sorted{static_cast<double>(soil_.x_sorted[i]), static_cast<double>(soil_.y_sorted[i])};
     m.acceleration = std::max(m.acceleration, norm({soil_.ax[i], soil_.ay[i]}));
     m.speed = std::max(m.speed, norm(soil_.velocity(i))), m.moved = std::max(m.moved, norm(soil_.position(i) - sorted));
+    m.leftmost = std::min(m.leftmost, soil_.x[i]), m.rightmost = std::max(m.rightmost, soil_.x[i]);
     m.sound = m.sound && std::isfinite(norm2(soil_.position(i)) + norm2(soil_.velocity(i)) + soil_.rho[i]) && soil_.rho[i] > 0.0;
   }
   return m;
@@ -281,6 +283,7 @@ void Simulation::check(const Motion& motion) {
 bool Simulation::rests() const { return slow_since_ >= 0.0 && time_ - slow_since_ >= model_.time.stop_at_rest->hold; }
 
 void Simulation::count_penetrations() {
+#pragma omp parallel for schedule(static, 512)
   for (std::size_t i = 0; i < soil_.n_active; ++i)
     if (nearest(wall_line_, soil_.position(i)).distance < 0.0) penetrated_[static_cast<std::size_t>(soil_.id[i])] = 1;
 }

@@ -76,7 +76,7 @@ class Simulation {
   void sort();
   void build_cells();
   void renew(double dt);
-  void retire_departed();
+  void retire_departed(const Motion& motion);
   Motion plain_motion() const;
   void filter_density();
   void check(const Motion& motion);

@@ -120,7 +120,7 @@ HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil
   const Packer packer(f, k);
   const Wide dt = each(step), half = each(0.5), zero = each(0.0);
   V way2 = hn::Zero(d), acceleration2 = hn::Zero(d);
-  Wide speed2 = zero, moved2 = zero, lightest = each(1e300), unsound = zero;
+  Wide speed2 = zero, moved2 = zero, lightest = each(1e300), unsound = zero, leftmost = each(1e300), rightmost = each(-1e300);
   for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
     const std::size_t count = std::min(chunk.end - i, lanes);
     const V ax = hn::LoadU(d, f.soil.ax.data() + i), ay = hn::LoadU(d, f.soil.ay.data() + i);
@@ -157,19 +157,24 @@ HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil
     if (count < lanes) {
       const M some = hn::FirstN(d, count);
       way2_i = hn::IfThenElseZero(some, way2_i), acceleration2_i = hn::IfThenElseZero(some, acceleration2_i);
-      HWY_ALIGN double rho[lanes];
-      std::fill_n(rho, lanes, 1e300);
-      store(s.rho, rho, count);
-      s.rho = load(rho, lanes);
+      // Lanes without a particle repeat the first one.
+      const auto fill = [&](Wide& v) HWY_ATTR {
+        HWY_ALIGN double values[lanes];
+        store(v, values, lanes);
+        std::fill(values + count, values + lanes, values[0]);
+        v = load(values, lanes);
+      };
+      fill(s.rho), fill(s.x);
     }
     const Wide speed2_i = s.vx * s.vx + s.vy * s.vy, moved2_i = dx * dx + dy * dy;
     way2 = hn::Max(way2, way2_i), acceleration2 = hn::Max(acceleration2, acceleration2_i);
     speed2 = max(speed2, speed2_i), moved2 = max(moved2, moved2_i), lightest = min(lightest, s.rho);
+    leftmost = min(leftmost, s.x), rightmost = max(rightmost, s.x);
     unsound = unsound + zero * (speed2_i + moved2_i + s.rho);  // stays zero unless something is not finite
   }
   const auto root = [&](V squares) HWY_ATTR { return std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, squares)))); };
-  return {step * root(way2), root(acceleration2), std::sqrt(largest(speed2)), std::sqrt(largest(moved2)),
-          total(unsound) == 0.0 && smallest(lightest) > 0.0};
+  return {step * root(way2), root(acceleration2), std::sqrt(largest(speed2)), std::sqrt(largest(moved2)), smallest(leftmost),
+          largest(rightmost), total(unsound) == 0.0 && smallest(lightest) > 0.0};
 }
 
 struct BoxI {

@@ -3,6 +3,7 @@
 // double-precision loops in right_hand_side.cpp are its oracle.
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -55,11 +56,14 @@ struct Motion {
   double acceleration = 0.0;  ///< largest, of the last evaluation [m/s2]
   double speed = 0.0;         ///< largest, now [m/s]
   double moved = 0.0;         ///< farthest from where one stood at the last sort [m]
+  double leftmost = std::numeric_limits<double>::infinity(), rightmost = -leftmost;  ///< smallest and largest x, now [m]
   bool sound = true;          ///< all finite, all densities positive
 
   /// The extremes of two lots of particles.
   Motion with(const Motion& b) const {
-    return {std::max(way, b.way), std::max(acceleration, b.acceleration), std::max(speed, b.speed), std::max(moved, b.moved), sound && b.sound};
+    return {std::max(way, b.way),     std::max(acceleration, b.acceleration), std::max(speed, b.speed),
+            std::max(moved, b.moved), std::min(leftmost, b.leftmost),         std::max(rightmost, b.rightmost),
+            sound && b.sound};
   }
 };
 

@@ -1,5 +1,7 @@
 #include "sph/vectorised_flow.hpp"
 
+#include <omp.h>
+
 #include <algorithm>
 
 namespace talus {
@@ -87,6 +89,22 @@ void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const C
     for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c)
       list_neighbours(flow_.fixed, flow_.wall_clusters, w.place, soil_cells, s.motion, reach, moved, n_soil, c, flow_.wall_soil);
   }
+  work_.assign(1, 0);
+  for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) {
+    constexpr std::size_t law = 10;  // what a cluster costs besides, in neighbours
+    const auto length = [&](const ClusterList& list) { return std::size_t{list.chunks[c].at.back()}; };
+    work_.push_back(work_.back() + length(flow_.soil_soil) + 2 * length(flow_.soil_wall) + law * ClusterList::chunk_size);
+  }
+}
+
+/// Chunks of the soil's clusters for the calling thread: consecutive ones, with as many neighbours as those of the others.
+Chunk VectorisedFlow::share_of_thread() const {
+  const auto threads = static_cast<std::size_t>(omp_get_num_threads()), thread = static_cast<std::size_t>(omp_get_thread_num());
+  const auto border = [&](std::size_t t) {
+    const auto work = work_.back() * t / threads;
+    return static_cast<std::size_t>(std::lower_bound(work_.begin(), work_.end(), work) - work_.begin());
+  };
+  return {border(thread), border(thread + 1)};
 }
 
 /// Inside a parallel region.
@@ -105,16 +123,16 @@ void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bo
     if (pack) pack_active(soil, ahead);
 #pragma omp master
     watch.lap(times_.update);
-#pragma omp for schedule(static)
-    for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) stress_pass(flow_, k_, soil, ahead, keep, c);
+    const Chunk share = share_of_thread();
+    for (std::size_t c = share.begin; c < share.end; ++c) stress_pass(flow_, k_, soil, ahead, keep, c);
+#pragma omp barrier
 #pragma omp master
     watch.lap(times_.gradient);
 #pragma omp for schedule(static)
     for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, k_, walls, c);
 #pragma omp master
     watch.lap(times_.walls);
-#pragma omp for schedule(static)
-    for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) momentum_pass(flow_, k_, c);
+    for (std::size_t c = share.begin; c < share.end; ++c) momentum_pass(flow_, k_, c);
   }
   watch.lap(times_.momentum);
 }

@@ -47,9 +47,11 @@ class VectorisedFlow {
 
  private:
   void pack_active(const Soil& soil, double ahead);
+  Chunk share_of_thread() const;
 
   FlowConstants k_;
   PackedFlow flow_;
+  std::vector<std::size_t> work_ = {0};  ///< of all chunks before each one
   bool packed_now_ = false;  ///< the present state is packed
   StageTimes times_;
 };
