@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <future>
 #include <iostream>
 #include <optional>
 #include <random>
@@ -84,13 +85,21 @@ class Recorder {
   void record(const Simulation& simulation) {
     if (simulation.time() >= history_.back().time + history_step_) history_.push_back(simulation.history_row());
     if (due_.empty() || simulation.time() < due_.front()) return;
-    snapshots_.append(simulation.frame());
+    settle();
+    // Written while the run goes on.
+    writing_ = std::async(std::launch::async, [this, frame = simulation.frame()] { snapshots_.append(frame); });
     while (!due_.empty() && due_.front() <= simulation.time()) due_.erase(due_.begin());
+  }
+  /// Waits until the last snapshot is in its file. To be called before anything else that uses HDF5.
+  /// @throws IoError when it could not be written
+  void settle() {
+    if (writing_.valid()) writing_.get();
   }
   void write_history() const { talus::write_history(history_file_, history_); }
   void finish(const Simulation& simulation) {
     if (history_.back().step < simulation.steps()) history_.push_back(simulation.history_row());
     write_history();
+    settle();
     snapshots_.append(simulation.frame());
     snapshots_.close();
   }
@@ -105,6 +114,7 @@ class Recorder {
   std::vector<double> due_;
   double history_step_;
   std::vector<HistoryRow> history_;
+  std::future<void> writing_;  ///< last member: it is waited for before the others go
 };
 
 /// One line that is redrawn, on a terminal only.
@@ -195,6 +205,7 @@ Exit run(const RunOptions& options) {
     State state = simulation.state();
     state.reals["wall_clock"] = {earlier + seconds_since(started)};
     recorder.write_history();
+    recorder.settle();
     write_checkpoint(checkpoint_file, state, header);
   };
 
