@@ -51,7 +51,7 @@ Id make_dataset(hid_t parent, const std::string& name, hid_t type, Shape shape, 
   herr_t status = H5Pset_obj_track_times(list, false);
   const bool compressed = filter == Filter::compressed && (growing || shape.rows > 0);
   if (growing || compressed) status |= H5Pset_chunk(list, rank, chunk_dims.data());
-  if (compressed) status |= H5Pset_shuffle(list) | H5Pset_deflate(list, 4);
+  if (compressed) status |= H5Pset_shuffle(list) | H5Pset_deflate(list, 1);
   if (status < 0) fail(what);
   return Id(H5Dcreate2(parent, name.c_str(), type, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose, what);
 }
