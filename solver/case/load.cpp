@@ -1,5 +1,7 @@
 #include "case/load.hpp"
 
+#include <cstdint>
+
 #include "case/checks.hpp"
 #include "case/overrides.hpp"
 #include "case/sections.hpp"

@@ -1,6 +1,7 @@
 // Material, rheology, numerics, walls, time: keys, units, ranges. Defaults are those of the structs.
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "case/sections.hpp"

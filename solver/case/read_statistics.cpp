@@ -1,6 +1,8 @@
 // Random field and study: keys, units, ranges. Defaults are those of the structs.
 
 #include "case/sections.hpp"
+
+#include <cstdint>
 #include "random_field/marginals.hpp"
 
 namespace talus {

@@ -1,6 +1,7 @@
 #include "figures/study_files.hpp"
 
 #include <charconv>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 
 #include "io/files.hpp"

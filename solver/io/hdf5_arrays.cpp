@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "io/hdf5.hpp"
 #include "io/hdf5_detail.hpp"

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 
 #include "io/hdf5.hpp"
 #include "io/hdf5_detail.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 // What the parts of the HDF5 wrapper share.
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <type_traits>

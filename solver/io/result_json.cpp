@@ -1,6 +1,7 @@
 #include "io/result_json.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <stdexcept>

@@ -1,6 +1,7 @@
 #include "io/vtkhdf_layout.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 #include <utility>
 #include <vector>

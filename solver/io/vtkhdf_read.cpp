@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 
 #include "io/vtkhdf.hpp"
 #include "io/vtkhdf_layout.hpp"

@@ -4,6 +4,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 
 namespace talus {
 namespace {

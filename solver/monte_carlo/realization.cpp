@@ -1,6 +1,7 @@
 #include "monte_carlo/realization.hpp"
 
 #include <cmath>
+#include <cstdint>
 
 #include "math/error.hpp"
 #include "random_field/random_field.hpp"

@@ -7,6 +7,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace talus {

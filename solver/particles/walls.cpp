@@ -1,6 +1,7 @@
 #include "particles/walls.hpp"
 
 #include <cmath>
+#include <cstdint>
 
 namespace talus {
 

@@ -2,6 +2,7 @@
 // A deterministic run: particles made from a model, stepped to the end, read off as frames, history and result.
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #include "sph/cluster_list.hpp"
 
+#include <cstdint>
+
 namespace talus {
 
 std::vector<std::uint32_t> clusters(const CellList& cells, std::size_t lanes) {

@@ -1,6 +1,7 @@
 #include "sph/pair_loops.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 

@@ -3,6 +3,7 @@
 // double-precision loops in right_hand_side.cpp are its oracle.
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>

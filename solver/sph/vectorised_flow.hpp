@@ -2,6 +2,7 @@
 // The right-hand side at speed: packed particles, lists of neighbours that last some steps, vectors of single precision. State
 // and its summation over time stay in double. RightHandSide is its oracle.
 
+#include <cstdint>
 #include <span>
 
 #include "math/stopwatch.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 
 #include "io/files.hpp"
 #include "io/result_json.hpp"

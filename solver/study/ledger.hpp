@@ -1,6 +1,7 @@
 #pragma once
 // The books of a study on disk: a realization is finished once its result stands in runs/, by rename, and never before.
 
+#include <cstdint>
 #include <vector>
 
 #include "study/paths.hpp"

@@ -1,6 +1,7 @@
 #include "study/plan.hpp"
 
 #include <chrono>
+#include <cstdint>
 
 #include "io/files.hpp"
 

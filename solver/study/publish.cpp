@@ -1,6 +1,7 @@
 #include "study/publish.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "io/files.hpp"
 #include "study/csv.hpp"

@@ -1,5 +1,6 @@
 #include "study/record.hpp"
 
+#include <cstdint>
 #include <numbers>
 
 namespace talus {

@@ -1,5 +1,7 @@
 // The loops of one evaluation, each by itself, over 12,800 particles of disordered soil. Items are soil particles.
 
+#include <cstdint>
+
 #include <benchmark/benchmark.h>
 
 #include "integrate/integrator.hpp"

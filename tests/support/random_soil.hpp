@@ -2,6 +2,7 @@
 // Random soil for tests: a jittered lattice with non-uniform masses, densities, velocities and strengths, so that a swapped
 // index shows.
 
+#include <cstdint>
 #include <random>
 
 #include "neighbours/cell_list.hpp"

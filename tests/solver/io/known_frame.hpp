@@ -1,6 +1,7 @@
 #pragma once
 // A frame whose numbers follow from a particle's number and the step: test_vtkhdf_vtk.py knows the same formulas.
 
+#include <cstdint>
 #include <numbers>
 
 #include "simulation/frame.hpp"

@@ -1,4 +1,5 @@
 #include <bit>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <stdexcept>

@@ -1,4 +1,6 @@
 #include "faults.hpp"
+
+#include <cstdint>
 #include "io/files.hpp"
 #include "io/hdf5.hpp"
 #include "temporary_directory.hpp"

@@ -2,6 +2,7 @@
 
 #include <signal.h>
 
+#include <cstdint>
 #include <map>
 #include <sstream>
 #include <thread>

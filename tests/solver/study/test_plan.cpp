@@ -1,4 +1,6 @@
 #include "math/error.hpp"
+
+#include <cstdint>
 #include "studies.hpp"
 #include "study/plan.hpp"
 

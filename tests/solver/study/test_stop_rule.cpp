@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdint>
 
 #include "monte_carlo/statistics.hpp"
 #include "studies.hpp"

@@ -1,0 +1,210 @@
+// Packing of the particles, and moving them on.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "sph/pair_loops.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sph/pack_loops.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "sph/lanes-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::HWY_NAMESPACE {
+
+using DoubleV = hn::Vec<Doubles>;
+
+/// One value of all particles of a vector in double precision: lower and upper half.
+struct Wide {
+  DoubleV lo, hi;
+};
+HWY_INLINE Wide load(const double* HWY_RESTRICT from, std::size_t count) {
+  const Doubles dd;
+  HWY_ALIGN double buffer[lanes] = {};
+  if (count < lanes) {
+    for (std::size_t l = 0; l < count; ++l) buffer[l] = from[l];
+    from = buffer;
+  }
+  return {hn::LoadU(dd, from), hn::LoadU(dd, from + lanes / 2)};
+}
+HWY_INLINE void store(Wide v, double* HWY_RESTRICT to, std::size_t count) {
+  const Doubles dd;
+  if (count == lanes) {
+    hn::StoreU(v.lo, dd, to), hn::StoreU(v.hi, dd, to + lanes / 2);
+    return;
+  }
+  HWY_ALIGN double buffer[lanes];
+  hn::Store(v.lo, dd, buffer), hn::Store(v.hi, dd, buffer + lanes / 2);
+  for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
+}
+HWY_INLINE Wide wide(V v) {
+  const Doubles dd;
+  return {hn::PromoteTo(dd, hn::LowerHalf(v)), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), v))};
+}
+HWY_INLINE V narrow(Wide v) {
+  const HalfD half;
+  return hn::Combine(D(), hn::DemoteTo(half, v.hi), hn::DemoteTo(half, v.lo));
+}
+HWY_INLINE Wide each(double value) { return {hn::Set(Doubles(), value), hn::Set(Doubles(), value)}; }
+HWY_INLINE Wide operator+(Wide a, Wide b) { return {hn::Add(a.lo, b.lo), hn::Add(a.hi, b.hi)}; }
+HWY_INLINE Wide operator-(Wide a, Wide b) { return {hn::Sub(a.lo, b.lo), hn::Sub(a.hi, b.hi)}; }
+HWY_INLINE Wide operator*(Wide a, Wide b) { return {hn::Mul(a.lo, b.lo), hn::Mul(a.hi, b.hi)}; }
+HWY_INLINE Wide operator/(Wide a, Wide b) { return {hn::Div(a.lo, b.lo), hn::Div(a.hi, b.hi)}; }
+
+/// Fixed-point coordinates as bit patterns.
+HWY_INLINE V fixed_point(Wide x, double lo, double per_quantum) {
+  const hn::Rebind<std::int32_t, HalfD> di;
+  const Wide units = (x - each(lo)) * each(per_quantum);
+  return hn::BitCast(D(), hn::Combine(DI(), hn::DemoteTo(di, units.hi), hn::DemoteTo(di, units.lo)));
+}
+
+HWY_INLINE Wide max(Wide a, Wide b) { return {hn::Max(a.lo, b.lo), hn::Max(a.hi, b.hi)}; }
+HWY_INLINE Wide min(Wide a, Wide b) { return {hn::Min(a.lo, b.lo), hn::Min(a.hi, b.hi)}; }
+HWY_INLINE double largest(Wide a) { return hn::GetLane(hn::MaxOfLanes(Doubles(), hn::Max(a.lo, a.hi))); }
+HWY_INLINE double smallest(Wide a) { return hn::GetLane(hn::MinOfLanes(Doubles(), hn::Min(a.lo, a.hi))); }
+HWY_INLINE double total(Wide a) { return hn::GetLane(hn::SumOfLanes(Doubles(), hn::Add(a.lo, a.hi))); }
+
+/// What packing reads of the particles of one vector.
+struct StateV {
+  Wide x, y, vx, vy, rho;
+};
+
+/// Packs states as they are.
+struct Packer {
+  double per_quantum;
+  Wide gx, gy;
+
+  Packer(const PackedFlow& f, const FlowConstants& k)
+      : per_quantum(1.0 / f.fixed.quantum), gx(each(k.g.x / (k.c_s * k.c_s))), gy(each(k.g.y / (k.c_s * k.c_s))) {}
+
+  HWY_INLINE void pack(PackedFlow& f, const FlowConstants& k, const Soil& soil, const StateV& s, std::size_t i, std::size_t count) const {
+    const D d;
+    HWY_ALIGN double rho0[lanes];
+    HWY_ALIGN float material[lanes] = {};
+    std::fill_n(rho0, lanes, k.laws[0].eos.rho0);
+    if (k.laws.size() > 1)
+      for (std::size_t l = 0; l < count; ++l)
+        material[l] = static_cast<float>(soil.material[i + l]), rho0[l] = k.laws[static_cast<std::size_t>(soil.material[i + l])].eos.rho0;
+    const Wide q = s.rho / load(rho0, lanes) - each(1.0);
+    const Wide hydrostatic = gx * (s.x - each(f.fixed.lo.x)) + gy * (s.y - each(f.fixed.lo.y));
+    store_groups(fixed_point(s.x, f.fixed.lo.x, per_quantum), fixed_point(s.y, f.fixed.lo.y, per_quantum), narrow(s.vx), narrow(s.vy),
+                 f.soil.motion.data() + 4 * i, count);
+    store_groups(narrow(load(soil.m.data() + i, count) / s.rho), narrow(q - hydrostatic), narrow(s.rho), hn::Load(d, material),
+                 f.soil.density.data() + 4 * i, count);
+    store(narrow(q), f.soil.q.data() + i, count);
+  }
+};
+
+HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk) {
+  const D d;
+  const Packer packer(f, k);
+  const Wide dt = each(ahead);
+  for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
+    const std::size_t count = std::min(chunk.end - i, lanes);
+    const auto rate = [&](const std::vector<float>& array) HWY_ATTR { return wide(hn::LoadU(d, array.data() + i)); };
+    const auto state = [&](const std::vector<double>& array) HWY_ATTR { return load(array.data() + i, count); };
+    const Wide vx = state(soil.vx), vy = state(soil.vy);
+    packer.pack(f, k, soil,
+                {state(soil.x) + dt * vx, state(soil.y) + dt * vy, vx + dt * rate(f.soil.ax), vy + dt * rate(f.soil.ay),
+                 state(soil.rho) + dt * rate(f.soil.drho)},
+                i, count);
+  }
+}
+
+HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double step, bool middle, Chunk chunk) {
+  const D d;
+  const Packer packer(f, k);
+  const Wide dt = each(step), half = each(0.5), zero = each(0.0);
+  V way2 = hn::Zero(d), acceleration2 = hn::Zero(d);
+  Wide speed2 = zero, moved2 = zero, lightest = each(1e300), unsound = zero, leftmost = each(1e300), rightmost = each(-1e300);
+  for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
+    const std::size_t count = std::min(chunk.end - i, lanes);
+    const V ax = hn::LoadU(d, f.soil.ax.data() + i), ay = hn::LoadU(d, f.soil.ay.data() + i);
+    const auto state = [&](const std::vector<double>& array) HWY_ATTR { return load(array.data() + i, count); };
+    const auto move = [&](std::vector<double>& array, Wide rate) HWY_ATTR {
+      const Wide to = load(array.data() + i, count) + dt * rate;
+      store(to, array.data() + i, count);
+      return to;
+    };
+    const auto move_with = [&](std::vector<double>& array, const std::vector<float>& rate) HWY_ATTR {
+      return move(array, wide(hn::LoadU(d, rate.data() + i)));
+    };
+    StateV s;
+    const Wide old_vx = state(soil.vx), old_vy = state(soil.vy);
+    s.vx = move(soil.vx, wide(ax)), s.vy = move(soil.vy, wide(ay));
+    s.rho = move_with(soil.rho, f.soil.drho);
+    move_with(soil.txx, f.soil.dtxx), move_with(soil.tyy, f.soil.dtyy), move_with(soil.txy, f.soil.dtxy);
+    Wide vx = half * (old_vx + s.vx), vy = half * (old_vy + s.vy);
+    if (middle) {
+      V x, y, middle_vx, middle_vy;
+      hn::LoadInterleaved4(d, f.soil.motion.data() + 4 * i, x, y, middle_vx, middle_vy);
+      vx = wide(middle_vx), vy = wide(middle_vy);
+    }
+    s.x = move(soil.x, vx), s.y = move(soil.y, vy);
+    packer.pack(f, k, soil, s, i, count);
+    const auto gone_since = [&](const std::vector<float>& from, Wide to) HWY_ATTR {
+      HWY_ALIGN float buffer[lanes] = {};
+      std::copy_n(from.data() + i, count, buffer);
+      return to - wide(hn::Load(d, buffer));
+    };
+    const Wide dx = gone_since(soil.x_sorted, s.x), dy = gone_since(soil.y_sorted, s.y);
+    const V vx_n = narrow(vx), vy_n = narrow(vy);
+    V way2_i = hn::MulAdd(vx_n, vx_n, hn::Mul(vy_n, vy_n)), acceleration2_i = hn::MulAdd(ax, ax, hn::Mul(ay, ay));
+    if (count < lanes) {
+      const M some = hn::FirstN(d, count);
+      way2_i = hn::IfThenElseZero(some, way2_i), acceleration2_i = hn::IfThenElseZero(some, acceleration2_i);
+      // Lanes without a particle repeat the first one.
+      const auto fill = [&](Wide& v) HWY_ATTR {
+        HWY_ALIGN double values[lanes];
+        store(v, values, lanes);
+        std::fill(values + count, values + lanes, values[0]);
+        v = load(values, lanes);
+      };
+      fill(s.rho), fill(s.x);
+    }
+    const Wide speed2_i = s.vx * s.vx + s.vy * s.vy, moved2_i = dx * dx + dy * dy;
+    way2 = hn::Max(way2, way2_i), acceleration2 = hn::Max(acceleration2, acceleration2_i);
+    speed2 = max(speed2, speed2_i), moved2 = max(moved2, moved2_i), lightest = min(lightest, s.rho);
+    leftmost = min(leftmost, s.x), rightmost = max(rightmost, s.x);
+    unsound = unsound + zero * (speed2_i + moved2_i + s.rho);  // stays zero unless something is not finite
+  }
+  const auto root = [&](V squares) HWY_ATTR { return std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, squares)))); };
+  return {step * root(way2), root(acceleration2), std::sqrt(largest(speed2)), std::sqrt(largest(moved2)), smallest(leftmost),
+          largest(rightmost), total(unsound) == 0.0 && smallest(lightest) > 0.0};
+}
+
+}  // namespace talus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace talus {
+
+HWY_EXPORT(pack_soil_loop);
+HWY_EXPORT(move_soil_loop);
+
+void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk) {
+  HWY_DYNAMIC_DISPATCH(pack_soil_loop)(f, k, soil, ahead, chunk);
+}
+
+Motion move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, bool middle, Chunk chunk) {
+  return HWY_DYNAMIC_DISPATCH(move_soil_loop)(f, k, soil, dt, middle, chunk);
+}
+
+void pack_walls(PackedFlow& f, const WallParticles& walls) {
+  // Walls beyond the fixed point's box are too far from any soil to matter.
+  const auto fixed = [&](double x, double lo) {
+    return std::bit_cast<float>(static_cast<std::int32_t>(std::clamp((x - lo) / f.fixed.quantum, 0.0, double{1 << 30})));
+  };
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    f.walls.place[4 * w] = fixed(walls.x[w], f.fixed.lo.x), f.walls.place[4 * w + 1] = fixed(walls.y[w], f.fixed.lo.y);
+    f.walls.place[4 * w + 2] = static_cast<float>(walls.nx[w]), f.walls.place[4 * w + 3] = static_cast<float>(walls.ny[w]);
+    f.walls.stress[4 * w + 3] = static_cast<float>(walls.depth[w]);
+  }
+}
+
+}  // namespace talus
+#endif
