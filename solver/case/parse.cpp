@@ -129,6 +129,8 @@ std::string read_text(const std::filesystem::path& path, std::size_t most) {
 Json parse_json(std::string_view text, const std::string& source, const ParseLimits& limits) {
   if (text.size() > limits.bytes)
     throw ConfigError(source, "is larger than " + std::to_string(limits.bytes >> 20) + " MiB");
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    throw ConfigError(source + ":1:1", "holds nothing; a case is one JSON object, { ... }");
   Faults faults;
   Watch watch(limits, faults);
   const auto follow = [&](int, Json::parse_event_t event, Json& parsed) {
