@@ -358,6 +358,11 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, std::size_t c
     hn::LoadInterleaved4(d, f.soil.stress.data() + 4 * i, sxx, syy, sxy, p);
     viscous.of(rho);
     V sum_x = zero, sum_y = zero;  // of V_j (s_i + s_j - rho_i rho_j Pi) r_ij F
+    const auto add_force = [&](const float* stress, V Pi, V VF, V x, V y) HWY_ATTR {
+      const V xx = hn::Sub(hn::Add(sxx, set(stress[0])), Pi), yy = hn::Sub(hn::Add(syy, set(stress[1])), Pi), xy = hn::Add(sxy, set(stress[2]));
+      sum_x = hn::MulAdd(VF, hn::MulAdd(xx, x, hn::Mul(xy, y)), sum_x);
+      sum_y = hn::MulAdd(VF, hn::MulAdd(xy, x, hn::Mul(yy, y)), sum_y);
+    };
     const Neighbours near = neighbours(f.soil_soil, c);
     Separations next = separations(X, Y, f.soil.motion.data(), near.begin);
     for (const std::uint32_t* j = near.begin; j != near.end; j += block) {
@@ -372,9 +377,7 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, std::size_t c
         const V x = r.x.v[b], y = r.y.v[b], VF = hn::Mul(set(density[0]), F.v[b]);
         const V v_dot_r = hn::MulAdd(hn::Sub(vx, set(motion[2])), x, hn::Mul(hn::Sub(vy, set(motion[3])), y));
         const V Pi = viscous(v_dot_r, r.s.v[b], set(density[2]));
-        const V xx = hn::Sub(hn::Add(sxx, set(stress[0])), Pi), yy = hn::Sub(hn::Add(syy, set(stress[1])), Pi), xy = hn::Add(sxy, set(stress[2]));
-        sum_x = hn::MulAdd(VF, hn::MulAdd(xx, x, hn::Mul(xy, y)), sum_x);
-        sum_y = hn::MulAdd(VF, hn::MulAdd(xy, x, hn::Mul(yy, y)), sum_y);
+        add_force(stress, Pi, VF, x, y);
       }
     }
     const Neighbours wall = neighbours(f.soil_wall, c);
@@ -390,9 +393,7 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, std::size_t c
         V VF = hn::Mul(volume_w, F.v[b]);
         if (only_approaching) VF = hn::IfThenElseZero(hn::Lt(w.v_dot_r, zero), VF);
         const V Pi = viscous(w.v_dot_r, r.s.v[b], rho);
-        const V xx = hn::Sub(hn::Add(sxx, set(stress[0])), Pi), yy = hn::Sub(hn::Add(syy, set(stress[1])), Pi), xy = hn::Add(sxy, set(stress[2]));
-        sum_x = hn::MulAdd(VF, hn::MulAdd(xx, x, hn::Mul(xy, y)), sum_x);
-        sum_y = hn::MulAdd(VF, hn::MulAdd(xy, x, hn::Mul(yy, y)), sum_y);
+        add_force(stress, Pi, VF, x, y);
       }
     }
     const V scale = hn::Div(to_force, rho);
