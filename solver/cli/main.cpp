@@ -5,6 +5,7 @@
 #include <exception>
 #include <iostream>
 
+#include "cli/runtime_settings.hpp"
 #include "cli/verbs.hpp"
 #include "cli/version.hpp"
 #include "sph/pair_loops.hpp"
@@ -24,6 +25,7 @@ int report(talus::Exit code, const std::string& text) {
 
 int main(int argc, char** argv) {
   using talus::Exit;
+  talus::cli::settle_runtime(argv);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error with a message, not a sudden death
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // what large arrays no longer need goes back to the system

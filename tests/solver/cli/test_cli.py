@@ -150,6 +150,20 @@ class Basics(Directory):
         self.assertEqual(done.returncode, 2)
         self.assertIn("TALUS_SIMD", done.stderr)
 
+    def test_threads_do_not_spin_for_long_unless_asked_to(self):
+        for chosen in ({}, {"GOMP_SPINCOUNT": "7", "GLIBC_TUNABLES": "glibc.malloc.hugetlb=0"}):
+            environment = {name: value for name, value in os.environ.items() if not name.startswith(("GOMP_", "OMP_", "GLIBC_"))}
+            running = subprocess.Popen([TALUS, "run", SLOPE, "--out", self.dir / f"of{len(chosen)}"], env=environment | chosen,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            settings = {}
+            while running.poll() is None and "GOMP_SPINCOUNT" not in settings:
+                words = pathlib.Path(f"/proc/{running.pid}/environ").read_bytes().decode().split("\0")
+                settings = dict(word.split("=", 1) for word in words if "=" in word)
+            running.kill()
+            running.wait()
+            expected = {"GOMP_SPINCOUNT": "5000", "GLIBC_TUNABLES": "glibc.malloc.hugetlb=1"} | chosen  # what was chosen stays
+            self.assertEqual({name: settings.get(name) for name in expected}, expected)
+
     def test_bench_prints_one_json_value(self):
         done = talus("bench", "--json", "--seconds", 0.05, "--sizes", "2000,1000", "--threads", "1,2")
         self.assertEqual(done.returncode, 0, done.stderr)
