@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "sph/lanes-inl.hpp"
+#include "sph/wall.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
@@ -169,7 +170,7 @@ HWY_INLINE void apply_law(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
   if (k.numerics.tension_cutoff) p = hn::Max(p, zero);
   V tan_phi = load_doubles(soil.tan_phi.data() + i, count);
   if (k.walls.slip == WallSlip::friction)
-    tan_phi = hn::IfThenElse(hn::Lt(rates.wall_distance, set(k.dx)), hn::Min(tan_phi, set(std::tan(k.walls.phi))), tan_phi);
+    tan_phi = hn::IfThenElse(hn::Lt(rates.wall_distance, set(interface_thickness(k.h))), hn::Min(tan_phi, set(std::tan(k.walls.phi))), tan_phi);
   const V tau_y = hn::MulAdd(hn::Max(p, zero), tan_phi, constant([](const PointLaw& law) { return law.c; }));
   const V eta = constant([](const PointLaw& law) { return law.bingham.eta; });
   V txx, tyy, txy, viscosity = eta;
@@ -276,13 +277,14 @@ HWY_ATTR void wall_stress_loop(PackedFlow& f, const FlowConstants& k, WallPartic
   const D d;
   const Kernel kernel(f.fixed.quantum / k.h);
   const V zero = hn::Zero(d), per_c2 = set(1.0 / (k.c_s * k.c_s));
+  const bool rough = k.walls.slip == WallSlip::no_slip;
   const V gx = set(k.g.x * f.fixed.quantum), gy = set(k.g.y * f.fixed.quantum);  // of separations in quanta
   const std::size_t begin = chunk * ClusterList::chunk_size, end = std::min(begin + ClusterList::chunk_size, f.wall_clusters.size() - 1);
   for (std::size_t c = begin; c < end; ++c) {
     const std::size_t i = f.wall_clusters[c], count = f.wall_clusters[c + 1] - i;
     V X, Y, nx, ny, unused, depth;
     hn::LoadInterleaved4(d, f.walls.place.data() + 4 * i, X, Y, nx, ny);
-    V weight = zero, p = zero, txx = zero, tyy = zero, txy = zero, compression = zero;
+    V weight = zero, p = zero, p_soil = zero, txx = zero, tyy = zero, txy = zero, compression = zero;
     const Neighbours near = neighbours(f.wall_soil, c);
     for (const std::uint32_t* j = near.begin; j != near.end; j += block) {
       const Separations r = separations(X, Y, f.soil.motion.data(), j);
@@ -290,17 +292,21 @@ HWY_ATTR void wall_stress_loop(PackedFlow& f, const FlowConstants& k, WallPartic
         const float* HWY_RESTRICT stress = f.soil.stress.data() + 4 * std::size_t{j[b]};
         const V W = kernel.W(r.r.v[b]), g_r = hn::MulAdd(gx, r.x.v[b], hn::Mul(gy, r.y.v[b])), p_j = set(stress[3]);
         weight = hn::Add(weight, W);
+        p_soil = hn::MulAdd(W, p_j, p_soil);
         p = hn::MulAdd(W, hn::MulAdd(set(f.soil.density[4 * std::size_t{j[b]} + 2]), g_r, p_j), p);
         compression = hn::MulAdd(W, hn::MulAdd(g_r, per_c2, set(f.soil.q[j[b]])), compression);
         txx = hn::MulAdd(W, hn::Add(set(stress[0]), p_j), txx), tyy = hn::MulAdd(W, hn::Add(set(stress[1]), p_j), tyy);
         txy = hn::MulAdd(W, set(stress[2]), txy);
       }
     }
-    const M covered = hn::Gt(weight, zero);
+    const M covered = hn::Gt(weight, set(least_weight));
     const V inverse = hn::IfThenElseZero(covered, hn::Div(set(1.0f), weight));
     p = hn::Mul(p, inverse);
     if (k.numerics.tension_cutoff) p = hn::Max(p, zero);
-    V sxx = hn::MulSub(txx, inverse, p), syy = hn::MulSub(tyy, inverse, p), sxy = hn::Mul(txy, inverse);
+    p_soil = hn::Mul(p_soil, inverse);
+    const V growth = hn::Min(hn::Max(hn::Div(p, p_soil), zero), set(3.0f));  // deviator_growth of sph/wall.hpp
+    const V share = rough ? hn::Mul(inverse, hn::IfThenElse(hn::Gt(p_soil, zero), growth, set(1.0f))) : inverse;
+    V sxx = hn::MulSub(txx, share, p), syy = hn::MulSub(tyy, share, p), sxy = hn::Mul(txy, share);
     if (k.walls.slip == WallSlip::free_slip) {  // mirrored(s, n) of math/tensor.hpp, t = (-ny, nx)
       const V sn_x = hn::MulAdd(sxx, nx, hn::Mul(sxy, ny)), sn_y = hn::MulAdd(sxy, nx, hn::Mul(syy, ny));
       const V two_tn = hn::Mul(set(2.0f), hn::MulSub(nx, sn_y, hn::Mul(ny, sn_x)));

@@ -43,7 +43,7 @@ void RightHandSide::apply_law(Soil& soil, std::size_t i, const Rates& rates) con
   const PointLaw& law = k_.laws[static_cast<std::size_t>(soil.material[i])];
   const bool as_printed = k_.rheology.shear_rate == ShearRate::paper;
   const double tan_phi = k_.walls.slip == WallSlip::friction
-                             ? interface_tan_phi(soil.tan_phi[i], tan_phi_wall_, rates.wall_distance, k_.dx)
+                             ? interface_tan_phi(soil.tan_phi[i], tan_phi_wall_, rates.wall_distance, interface_thickness(k_.h))
                              : soil.tan_phi[i];
   const Dev e = deviator(strain_rate(rates.L));
   const double p_full = law.eos.pressure(soil.rho[i]);
@@ -110,9 +110,10 @@ void RightHandSide::wall_stress(const Kernel& kernel, const Soil& soil, WallPart
     const Dev t{soil.sxx[j] + soil.p[j], soil.syy[j] + soil.p[j], soil.sxy[j]};
     sum.add(kernel.W(r2), soil.p[j], t, soil.rho[j], rho0_[static_cast<std::size_t>(soil.material[j])], k_.g, r, k_.c_s);
   });
-  const double inverse = sum.weight > 0.0 ? 1.0 / sum.weight : 0.0;
+  const double inverse = sum.weight > least_weight * kernel.W(0.0) ? 1.0 / sum.weight : 0.0;
   const double p = k_.numerics.tension_cutoff ? without_tension(sum.p * inverse) : sum.p * inverse;
-  Sym2 s = cauchy(p, inverse * sum.t);
+  const double growth = k_.walls.slip == WallSlip::no_slip ? deviator_growth(p, sum.p_soil * inverse) : 1.0;
+  Sym2 s = cauchy(p, (inverse * growth) * sum.t);
   if (k_.walls.slip == WallSlip::free_slip) s = mirrored(s, walls.normal(w));
   walls.p[w] = p, walls.compression[w] = sum.compression * inverse;
   walls.sxx[w] = s.xx, walls.syy[w] = s.yy, walls.sxy[w] = s.xy;

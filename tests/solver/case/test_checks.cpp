@@ -65,9 +65,9 @@ TEST(Doubts, AWallLowerThanTheSlide) {
 }
 
 TEST(Doubts, AStepInWhichSoundCrossesASmoothingLength) {
-  const Json document = with("/numerics/sound_speed_m_s", 100);  // h = 0.6 m
-  EXPECT_TRUE(test::load(with("/time/fixed_step_s", 0.0059, document)).warnings.empty());
-  EXPECT_EQ(test::load(with("/time/fixed_step_s", 0.0061, document)).warnings.size(), 1u);
+  const Json document = with("/numerics/sound_speed_m_s", 100);  // h = 0.75 m
+  EXPECT_TRUE(test::load(with("/time/fixed_step_s", 0.0074, document)).warnings.empty());
+  EXPECT_EQ(test::load(with("/time/fixed_step_s", 0.0076, document)).warnings.size(), 1u);
 }
 
 TEST(Doubts, AHypercubeThatIsToStopEarly) {

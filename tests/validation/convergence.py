@@ -1,0 +1,38 @@
+"""The illustrative slope at its median friction angle: fronts as the spacing shrinks."""
+
+import figures as fig
+import talus_runs
+from experiment import at_most, table
+
+TITLE = "Convergence of the illustrative slope"
+SOURCE = "self-convergence; [Z20] section 4 has about 34.1 m at 0.1 m on its own profile"
+MEASURES = {"influence_zone_m": "farthest particle", "front_connected_m": "connected body", "front_mass_999_m": "99.9 % of the mass",
+            "front_mass_99_m": "99 % of the mass", "centre_of_mass_x_m": "centre of mass"}
+
+
+def measure(work, coarse):
+    rows = []
+    for spacing in (0.4, 0.2) if coarse else (0.4, 0.2, 0.1, 0.05):
+        result = talus_runs.run(talus_runs.CASES / "illustrative.json", work / f"convergence-{spacing:g}", {"particle_spacing_m": spacing})
+        rows.append({"spacing_m": spacing, "final_max_speed_m_s": result["final_max_speed_m_s"], "penetrated": result["penetrated"],
+                     **{name: result[name] for name in MEASURES}})
+    return {"rows": rows}
+
+
+def criteria(numbers):
+    coarser, finest = numbers["rows"][-2:]
+    found = [at_most(f"{name}: change at the last halving [m]", abs(finest[key] - coarser[key]), 1.5) for key, name in MEASURES.items()]
+    fall = 12.2
+    return found + [at_most("fastest particle of the deposit over sqrt(g H)", finest["final_max_speed_m_s"] / (9.81 * fall) ** 0.5, 0.01),
+                    at_most("particles behind a wall", sum(r["penetrated"] for r in numbers["rows"]), 0)]
+
+
+def section(numbers, directory):
+    figure, axes = fig.plt.subplots(figsize=(5, 3.2))
+    for key, name in MEASURES.items():
+        if key != "centre_of_mass_x_m":
+            axes.semilogx([r["spacing_m"] for r in numbers["rows"]], [r[key] for r in numbers["rows"]], "o-", label=name)
+    axes.set(xlabel="dx [m]", ylabel="front [m]")
+    axes.legend()
+    rows = [[r["spacing_m"], *(f"{r[key]:.3f}" for key in MEASURES), f"{1000 * r['final_max_speed_m_s']:.1f}"] for r in numbers["rows"]]
+    return table(["dx [m]", *(f"{name} [m]" for name in MEASURES.values()), "fastest at the end [mm/s]"], rows) + "\n" + fig.save(figure, directory, "convergence")

@@ -1,0 +1,53 @@
+"""What an experiment is: a module with TITLE, SOURCE and three functions.
+
+measure(work, coarse)     runs what is missing under the directory `work` and returns numbers (JSON); `coarse`: a few minutes at most
+criteria(numbers)         what must hold: a list of Criterion
+section(numbers, figures) Markdown for the report; writes its figures into the directory `figures`
+"""
+
+import csv
+import pathlib
+from typing import NamedTuple
+
+DATA = pathlib.Path(__file__).resolve().parent / "data"
+
+
+class Criterion(NamedTuple):
+    """value must lie in [low, high]; one of them may be None."""
+
+    what: str
+    value: float
+    low: float | None
+    high: float | None
+
+    @property
+    def met(self):
+        return (self.low is None or self.value >= self.low) and (self.high is None or self.value <= self.high)
+
+
+def at_most(what, value, high):
+    return Criterion(what, value, None, high)
+
+
+def within(what, value, low, high):
+    return Criterion(what, value, low, high)
+
+
+def read_table(name):
+    """Rows of data/name as dictionaries."""
+    with open(DATA / name, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def table(header, rows):
+    """Markdown table; floats with three significant digits."""
+    def text(cell):
+        return f"{cell:.3g}" if isinstance(cell, float) else str(cell)
+    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
+    return "\n".join(lines + ["| " + " | ".join(map(text, row)) + " |" for row in rows]) + "\n"
+
+
+def order_of_convergence(spacings, errors):
+    """Observed order between the coarsest and the finest: log(e1/en)/log(dx1/dxn)."""
+    import math
+    return math.log(errors[0] / errors[-1]) / math.log(spacings[0] / spacings[-1])

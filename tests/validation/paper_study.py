@@ -1,0 +1,183 @@
+"""The study of Zhang et al. 2020, Table 4: cases 1-9, each with three truncations of the random field.
+
+`python3 paper_study.py WORK [N ...]` runs all of them to N realizations each, in as many passes as there are Ns; stopped at any moment,
+the same command goes on.
+"""
+
+import csv
+import json
+import pathlib
+import sys
+
+import numpy as np
+
+import figures as fig
+import talus_runs
+from experiment import Criterion, at_most, table
+
+TITLE = "The paper's study"
+SOURCE = "[Z20] section 4, Table 4 and Figures 12-15: |sigma| = 0.0763 ... 0.3814 at ell = 0.5 m (cases 1-5), ell = 0.1 ... 0.4 m at |sigma| = 0.2289 (cases 6-9, 3)"
+SPACING = 0.2
+TABLE_4 = {  # standard deviation of ln tan(phi), correlation length [m]
+    1: (0.0763, 0.5), 2: (0.1526, 0.5), 3: (0.2289, 0.5), 4: (0.3052, 0.5), 5: (0.3814, 0.5),
+    6: (0.2289, 0.1), 7: (0.2289, 0.2), 8: (0.2289, 0.3), 9: (0.2289, 0.4),
+}
+TRUNCATIONS = {
+    "sorted": {"random_field.truncation": "largest", "random_field.terms": 5},
+    "share": {"random_field.truncation": "variance_share", "random_field.variance_share": 0.95},
+    "diagonal": {"random_field.truncation": "diagonal", "random_field.terms": 5},
+}
+
+
+def settings(case, truncation, spacing=SPACING):
+    """Run until the slide rests: the rule ends a run some 0.2 s after the front has stopped."""
+    stdev, length = TABLE_4[case]
+    return {"particle_spacing_m": spacing, "random_field.log_stdev": stdev, "random_field.correlation_length_m": length,
+            "time.end_s": 15, "time.stop_at_rest": True, "numerics.kernel": "wendland_c2", "numerics.smoothing_ratio": 1.5, **TRUNCATIONS[truncation]}
+
+
+def name(case, truncation):
+    return f"case{case}-{truncation}"
+
+
+def directory(work, case, truncation, spacing=SPACING):
+    return pathlib.Path(work) / "paper_study" / f"dx{spacing:g}" / name(case, truncation)
+
+
+def advance(work, realizations, spacing=SPACING):
+    """Every study to at least so many realizations. Realization i has the same draws in all cases."""
+    for truncation in TRUNCATIONS:
+        for case in TABLE_4:
+            talus_runs.study(talus_runs.CASES / "illustrative.json", directory(work, case, truncation, spacing), realizations,
+                             settings(case, truncation, spacing))
+            print(name(case, truncation), realizations, flush=True)
+
+
+def measure(work, coarse):
+    """Reads what `advance` has made; a coarse one is made here."""
+    spacing = 0.8 if coarse else SPACING
+    if coarse:
+        advance(work, 20, spacing)
+    studies = []
+    for truncation in TRUNCATIONS:
+        for case in TABLE_4:
+            where = directory(work, case, truncation, spacing)
+            if (where / "study.json").exists():
+                studies.append(summary(case, truncation, where))
+    return {"spacing_m": spacing, "studies": studies}
+
+
+def summary(case, truncation, where):
+    study = json.loads((where / "study.json").read_text())
+    found = {"case": case, "truncation": truncation, "captured": study["captured_variance"]}
+    for key in ("influence_zone_m", "front_connected_m", "front_mass_99_m", "centre_of_mass_x_m"):
+        quantity = study["quantities"][key]
+        found[key] = {name: quantity[name] for name in ("mean", "mean_ci95", "stdev", "stdev_ci95", "noise_floor_stdev")}
+    with open(where / "realizations.csv", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["status"] == "done"]
+    found["n"] = len(rows)
+    found["fronts"] = [round(float(row["influence_zone_m"]), 3) for row in rows]
+    phi = np.array([float(row["mean_friction_angle_deg"]) for row in rows])
+    found["front_by_angle"] = float(np.polyfit(phi, found["fronts"], 1)[0]) if phi.std() > 1e-6 else 0.0  # [m/deg]
+    found["correlation_with_angle"] = float(np.corrcoef(phi, found["fronts"])[0, 1]) if phi.std() > 1e-6 else 0.0
+    return found
+
+
+def of(numbers, case, truncation):
+    return next((s for s in numbers["studies"] if s["case"] == case and s["truncation"] == truncation), None)
+
+
+def series(numbers, truncation, cases):
+    return [s for s in (of(numbers, case, truncation) for case in cases) if s]
+
+
+def criteria(numbers):
+    found = []
+    for truncation in TRUNCATIONS:
+        by_sigma = series(numbers, truncation, (1, 2, 3, 4, 5))
+        if len(by_sigma) == 5:
+            ratio = by_sigma[0]["influence_zone_m"]["stdev"] / by_sigma[-1]["influence_zone_m"]["stdev"]
+            found.append(at_most(f"{truncation}: spread of case 1 over case 5", ratio, 0.6))
+        by_length = series(numbers, truncation, (6, 3))
+        if len(by_length) == 2:
+            found.append(at_most(f"{truncation}: spread at ell = 0.1 over 0.5 m",
+                                 by_length[0]["influence_zone_m"]["stdev"] / by_length[1]["influence_zone_m"]["stdev"], 0.8))
+    floors = [s["influence_zone_m"]["noise_floor_stdev"] / s["influence_zone_m"]["stdev"] for s in numbers["studies"]]
+    return found + ([at_most("largest noise floor over a study's spread", max(floors), 0.5)] if floors else [])
+
+
+def interval(values, digits=3):
+    return f"{values[0]:.{digits}f} to {values[1]:.{digits}f}"
+
+
+def section(numbers, directory):
+    rows = []
+    for s in numbers["studies"]:
+        sigma, length = TABLE_4[s["case"]]
+        zone = s["influence_zone_m"]
+        rows.append([s["case"], s["truncation"], sigma, length, s["n"], f"{100 * s['captured']:.1f}", f"{zone['mean']:.3f}", interval(zone["mean_ci95"]),
+                     f"{zone['stdev']:.3f}", interval(zone["stdev_ci95"]), f"{1000 * zone['noise_floor_stdev']:.1f}", f"{s['centre_of_mass_x_m']['stdev']:.3f}"])
+    text = f"Spacing {numbers['spacing_m']:g} m, default numerics; realization i has the same draws in every case. `sorted`: the 5 largest modes; `diagonal`: " \
+           "5 pairs of equal index; `share`: 95 % of the variance.\n\n"
+    text += table(["case", "modes", "sigma", "ell [m]", "N", "captured [%]", "mean [m]", "95 %", "stdev [m]", "95 %", "floor [mm]", "stdev of the centre of mass [m]"], rows)
+    return text + "\n" + draw(numbers, directory) + "\n" + conclusions(numbers)
+
+
+def draw(numbers, directory):
+    figure, (left, right) = fig.plt.subplots(1, 2, figsize=(7.5, 3.2))
+    for truncation in TRUNCATIONS:
+        for axes, cases, parameter in ((left, (1, 2, 3, 4, 5), 0), (right, (6, 7, 8, 9, 3), 1)):
+            found = series(numbers, truncation, cases)
+            if not found:
+                continue
+            spread = np.array([s["influence_zone_m"]["stdev"] for s in found])
+            low, high = np.array([s["influence_zone_m"]["stdev_ci95"] for s in found]).T
+            axes.errorbar([TABLE_4[s["case"]][parameter] for s in found], spread, [spread - low, high - spread], fmt="o-", capsize=2, label=truncation)
+    left.set(xlabel="sigma of ln tan(phi)", ylabel="stdev of the influence zone [m]", ylim=(0, None))
+    right.set(xlabel="ell [m]", ylim=(0, None))
+    left.legend()
+    figure.tight_layout()
+    text = fig.save(figure, directory, "paper_study_spread")
+    figure, axes = fig.plt.subplots(1, 3, figsize=(9, 2.6), sharex=True, sharey=True)
+    for panel, truncation in zip(axes, TRUNCATIONS):
+        for case in (1, 3, 5):
+            if s := of(numbers, case, truncation):
+                panel.hist(s["fronts"], bins=np.arange(30, 40.01, 0.25), histtype="step", density=True, label=f"case {case}")
+        panel.set(title=truncation, xlabel="influence zone [m]", xlim=(31, 36.5))
+    axes[0].legend()
+    figure.tight_layout()
+    return text + "\n" + fig.save(figure, directory, "paper_study_histograms")
+
+
+def conclusions(numbers):
+    """The paper's four findings, each with the numbers that speak for or against it."""
+    lines = ["### The paper's conclusions", ""]
+    for truncation in TRUNCATIONS:
+        by_sigma, by_length = series(numbers, truncation, (1, 2, 3, 4, 5)), series(numbers, truncation, (6, 7, 8, 9, 3))
+        if len(by_sigma) < 5 or len(by_length) < 5:
+            lines.append(f"- `{truncation}`: not all nine cases have run yet.")
+            continue
+        def listed(found, value):
+            return ", ".join(value(s) for s in found)
+
+        def stdev(s):
+            return f"{s['influence_zone_m']['stdev']:.3f}"
+
+        last = by_sigma[-1]["influence_zone_m"]
+        first = by_sigma[0]["influence_zone_m"]["stdev"]
+        floor = max(s["influence_zone_m"]["noise_floor_stdev"] for s in by_sigma + by_length)
+        lines += [
+            f"- `{truncation}`, *the mean stays put* (cases 1-5): {listed(by_sigma, lambda s: format(s['influence_zone_m']['mean'], '.2f'))} m "
+            f"(+/- {(last['mean_ci95'][1] - last['mean_ci95'][0]) / 2:.2f} m at case 5).",
+            f"- `{truncation}`, *the spread grows with sigma*: {listed(by_sigma, stdev)} m; in proportion to sigma it would be "
+            f"{listed(by_sigma, lambda s: format(first * TABLE_4[s['case']][0] / TABLE_4[1][0], '.3f'))} m; noise floor {1000 * floor:.1f} mm at most.",
+            f"- `{truncation}`, *the spread grows with ell and levels off near ell/dx = 3*: {listed(by_length, stdev)} m at ell = 0.1, 0.2, 0.3, 0.4, 0.5 m "
+            f"(captured {listed(by_length, lambda s: format(100 * s['captured'], '.1f'))} % of the variance).",
+            f"- `{truncation}`, *weaker fields run further* (case 3): correlation of the influence zone with the mean friction angle "
+            f"{by_sigma[2]['correlation_with_angle']:.2f}, {by_sigma[2]['front_by_angle']:.2f} m per degree."]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    for target in sys.argv[2:] or ["100"]:
+        advance(sys.argv[1], int(target))
