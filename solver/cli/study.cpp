@@ -38,7 +38,7 @@ struct StudyOptions {
   std::optional<int> workers;
   std::vector<std::int64_t> range;  ///< first and last, both included
   int threads = 1;
-  bool json = false, retry_failed = false, no_figures = false;
+  bool json = false, retry_failed = false, no_figures = false, prepare = false;
 };
 
 int terminal_width() {
@@ -144,6 +144,10 @@ Exit study(const StudyOptions& options) {
   for (const Fault& w : loaded.warnings) std::cerr << "warning: " << w.pointer << " " << w.message << "\n";
   const Plan plan = make_plan(loaded, choose_seed(options, loaded.value), version());
   loaded.resolved["study"]["seed"] = plan.seed;
+  if (options.prepare) {
+    prepare_study(plan, loaded.resolved, options.out);
+    return Exit::ok;
+  }
 
   catch_stop_signals();
   Outcome outcome{};
@@ -188,6 +192,7 @@ void add_study(CLI::App& app, Action& action) {
       ->check(CLI::NonNegativeNumber);
   verb->add_flag("--retry-failed", options->retry_failed, "run again the realizations that have failed");
   verb->add_flag("--no-figures", options->no_figures, "draw none at the end");
+  verb->add_flag("--prepare", options->prepare, "only write plan and case, for others to run (talusd does)");
   verb->add_flag("--json", options->json, "print study.json on stdout");
   verb->callback([options, &action] { action = [options] { return study(*options); }; });
 }

@@ -27,6 +27,10 @@ Histogram histogram(std::span<const double> sample, std::vector<double> edges);
 /// 3.49 s n^(-1/3) (Biometrika 66, 1979). A constant sample gets one bin of width 0.1; an empty one gets no edges.
 std::vector<double> round_edges(std::span<const double> sample);
 
+/// The edges of `bins` >= 1 equal bins from the least to the greatest of a sorted sample; a constant sample gets bins
+/// of 0.1 / `bins` around it, an empty one no edges.
+std::vector<double> equal_edges(std::span<const double> sorted, std::size_t bins);
+
 /// Multiples of the round number near `width` (at most 1000 intervals) from at or below `lo` to at or above `hi`; lo <=
 /// hi, width > 0.
 std::vector<double> round_grid(double lo, double hi, double width);

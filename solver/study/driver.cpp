@@ -341,19 +341,29 @@ void write_resolved(const fs::path& path, const nlohmann::ordered_json& resolved
   write_file_atomically(path, text);
 }
 
-}  // namespace
-
-Outcome run_study(const Plan& plan, const nlohmann::ordered_json& resolved, const fs::path& directory,
-                  const DriverOptions& options) {
+/// The directory as its owner, with plan and case written.
+OutputDirectory claim(const Plan& plan, const nlohmann::ordered_json& resolved, const fs::path& directory) {
   if (const auto begun = find_plan(directory)) check_continues(*begun, plan, directory);
   const StudyPaths paths{directory};
   if (fs::exists(paths.realizations()) && !fs::exists(paths.runs()))
     throw IoError(directory.string() +
                   " holds a merged study, which cannot go on; run the rest elsewhere and merge again");
   OutputDirectory claimed(directory, OutputKind::study, plan.case_hash, true);
+  write_resolved(paths.resolved_case(), resolved);
+  write_plan(directory, plan);
+  return claimed;
+}
+
+}  // namespace
+
+void prepare_study(const Plan& plan, const nlohmann::ordered_json& resolved, const fs::path& directory) {
+  claim(plan, resolved, directory);
+}
+
+Outcome run_study(const Plan& plan, const nlohmann::ordered_json& resolved, const fs::path& directory,
+                  const DriverOptions& options) {
+  OutputDirectory claimed = claim(plan, resolved, directory);
   try {
-    write_resolved(paths.resolved_case(), resolved);
-    write_plan(directory, plan);
     const Outcome outcome = Driver(plan, directory, options).run();
     if (outcome == Outcome::finished || outcome == Outcome::stopped_early) claimed.mark_finished();
     return outcome;

@@ -32,6 +32,11 @@ struct DriverOptions {
   std::chrono::seconds grace{60};                 ///< for workers to checkpoint, or for those of a killed study to end
 };
 
+/// Makes `directory` the directory of the study without running anything: the plan and the case, for whoever runs the
+/// realizations; a plan that is there already may be made longer.
+/// @throws ConfigError, IoError as run_study
+void prepare_study(const Plan& plan, const nlohmann::ordered_json& resolved, const std::filesystem::path& directory);
+
 enum class Outcome { finished, stopped_early, interrupted, too_many_failed };
 
 /// Runs what `plan` asks for and `directory` does not hold yet.

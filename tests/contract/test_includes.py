@@ -1,5 +1,8 @@
 #!/usr/bin/env python3
-"""Who may include whom: the table of solver/README.md against every #include line.  usage: test_includes.py SOLVER_DIR"""
+"""Who may include whom: the tables of solver/README.md and service/README.md against every #include line.
+
+usage: test_includes.py SOURCE_DIR
+"""
 import pathlib
 import re
 import sys
@@ -12,14 +15,32 @@ for module in ("particles", "neighbours", "sph", "integrate", "simulation", "mat
 MAY["random_field"] = {"math", "random_field"}
 MAY["study"].discard("figures")
 
-solver, faults, lines = pathlib.Path(sys.argv[1]), [], 0
-for path in sorted(solver.rglob("*.[ch]pp")):
-    module = path.relative_to(solver).parts[0]
-    for number, line in enumerate(path.read_text().splitlines(), 1):
-        include = re.match(r'#include "([a-z_]+)/', line)
-        if include:
-            lines += 1
-            if include[1] not in MAY[module]:
-                faults.append(f"{path}:{number}: {module}/ must not include {include[1]}/")
-print("\n".join(faults) or f"{lines} includes, all downwards")
-sys.exit(bool(faults) or lines == 0)
+# The service runs the solver's program and reads its files; it includes nothing of it.
+SERVICE_ORDER = ["support", "queue", "process", "jobs", "http"]
+SERVICE_MAY = {module: set(SERVICE_ORDER[:k + 1]) for k, module in enumerate(SERVICE_ORDER)}
+SERVICE_MAY["process"].discard("queue")
+
+
+def faults_in(root, may):
+    faults, lines = [], 0
+    for path in sorted(root.rglob("*.[ch]pp")):
+        parts = path.relative_to(root).parts
+        if len(parts) == 1:
+            allowed = set(may)  # main and its options may see everything
+        else:
+            allowed = may[parts[0]]
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            include = re.match(r'#include "([a-z_]+)/', line)
+            if include:
+                lines += 1
+                if include[1] not in allowed:
+                    faults.append(f"{path}:{number}: {parts[0]}/ must not include {include[1]}/")
+    return faults, lines
+
+
+source = pathlib.Path(sys.argv[1])
+faults, lines = faults_in(source / "solver", MAY)
+service_faults, service_lines = faults_in(source / "service", SERVICE_MAY)
+faults += service_faults
+print("\n".join(faults) or f"{lines} + {service_lines} includes, all downwards")
+sys.exit(bool(faults) or lines == 0 or service_lines == 0)

@@ -103,3 +103,18 @@ TEST(ExceedanceCurve, FailuresStayInTheDenominatorAndWidenTheBounds) {
   EXPECT_TRUE(exceedance({}, std::vector{1.0}, 0).empty());
   EXPECT_EQ(exceedance({}, std::vector{1.0}, 2).front().p_if_failed_all_exceed, 1.0);
 }
+
+TEST(EqualEdges, SpanTheSampleExactly) {
+  const std::vector<double> edges = equal_edges(sorted(x), 3);
+  ASSERT_EQ(edges.size(), 4u);
+  EXPECT_EQ(edges.front(), 33.2);
+  EXPECT_EQ(edges.back(), 38.3);
+  EXPECT_DOUBLE_EQ(edges[1], 33.2 + (38.3 - 33.2) / 3);
+  EXPECT_EQ(histogram(x, edges).overflow + histogram(x, edges).underflow, 0);
+}
+
+TEST(EqualEdges, OddSamples) {
+  EXPECT_TRUE(equal_edges({}, 5).empty());
+  const Histogram h = histogram(std::vector{34.0, 34.0}, equal_edges(std::vector{34.0, 34.0}, 2));
+  EXPECT_EQ(h.counts[0] + h.counts[1], 2);
+}

@@ -1,0 +1,73 @@
+// What is here: landing page, conformance, processes, OpenAPI.
+
+#include "http/documents.hpp"
+#include "http/links.hpp"
+#include "http/service.hpp"
+
+namespace talus::service {
+namespace {
+
+constexpr const char* openapi_type = "application/vnd.oai.openapi+json;version=3.0";
+
+Json landing(const Exchange& exchange) {
+  return {{"title", "Talus"},
+          {"description", "How far will a slope run if it fails, and how sure are we? Monte Carlo studies with SPH."},
+          {"links",
+           {link(exchange, "/", "self", "This document"),
+            link(exchange, "/api", "service-desc", "The API as OpenAPI 3.0", openapi_type),
+            link(exchange, "/conformance", "http://www.opengis.net/def/rel/ogc/1.0/conformance", "Conformance classes"),
+            link(exchange, "/processes", "http://www.opengis.net/def/rel/ogc/1.0/processes", "Processes"),
+            link(exchange, "/jobs", "http://www.opengis.net/def/rel/ogc/1.0/job-list", "Jobs")}}};
+}
+
+Json conformance() {
+  Json classes = Json::array();
+  for (const char* name : {"core", "json", "oas30", "job-list", "dismiss", "ogc-process-description"})
+    classes.push_back(std::string("http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/") + name);
+  return {{"conformsTo", classes}};
+}
+
+Json links_of(const Exchange& exchange, const std::string& name) {
+  const std::string path = "/processes/" + name;
+  return {link(exchange, path, "self", "Process description"),
+          link(exchange, path + "/execution", "http://www.opengis.net/def/rel/ogc/1.0/execute", "Execution endpoint")};
+}
+
+Json processes(const Exchange& exchange) {
+  Json list = Json::array();
+  for (const auto& [name, text] : process_texts()) {
+    Json summary = Json::parse(text);
+    summary.erase("inputs");
+    summary.erase("outputs");
+    summary["links"] = links_of(exchange, name);
+    list.push_back(std::move(summary));
+  }
+  return {{"processes", list}, {"links", {link(exchange, "/processes", "self", "Processes")}}};
+}
+
+Json process(const Exchange& exchange) {
+  for (const auto& [name, text] : process_texts()) {
+    if (name != exchange.captured[0]) continue;
+    Json description = Json::parse(text);
+    description["links"] = links_of(exchange, name);
+    return description;
+  }
+  throw Refusal(Reason::no_such_process, "there is no process of this name");
+}
+
+}  // namespace
+
+Json link(const Exchange& exchange, const std::string& path, const std::string& rel, const std::string& title,
+          const std::string& type) {
+  return {{"href", exchange.base + path}, {"rel", rel}, {"type", type}, {"title", title}};
+}
+
+void add_discovery_routes(Router& router) {
+  router.add("GET", "/", Role::read, [](Exchange& e) { return json_answer(landing(e)); });
+  router.add("GET", "/conformance", Role::read, [](Exchange&) { return json_answer(conformance()); });
+  router.add("GET", "/processes", Role::read, [](Exchange& e) { return json_answer(processes(e)); });
+  router.add("GET", "/processes/{}", Role::read, [](Exchange& e) { return json_answer(process(e)); });
+  router.add("GET", "/api", Role::read, [](Exchange&) { return Answer{.type = openapi_type, .body = openapi_text()}; });
+}
+
+}  // namespace talus::service

@@ -1,0 +1,160 @@
+#include "http/guard.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+
+namespace talus::service {
+namespace {
+
+/// The headers that a handler looks at, and how often each may stand.
+constexpr std::array<std::string_view, 11> handed_on{
+    "host",   "accept",        "authorization",     "prefer",            "idempotency-key", "if-none-match",
+    "origin", "last-event-id", "x-forwarded-proto", "x-forwarded-host",  "x-request-id"};
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return out;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+/// RFC 9110: the characters of methods and header names.
+bool is_token(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+           std::string_view("!#$%&'*+-.^_`|~").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+}
+
+bool is_value(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c == '\t' || (c >= 32 && c != 127); });
+}
+
+/// The library decodes %0d and %0a in values, and a handler might send one back.
+bool hides_control(std::string_view value) {
+  for (std::size_t i = value.find('%'); i != std::string_view::npos && i + 2 < value.size(); i = value.find('%', i + 1))
+    if (value[i + 1] == '0' || value[i + 1] == '1' || lower(value.substr(i + 1, 2)) == "7f") return true;
+  return false;
+}
+
+bool is_target(std::string_view text) {
+  return text.starts_with('/') &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) { return c > 32 && c < 127; });
+}
+
+Head refused(int status, std::string why) { return {.status = status, .why = std::move(why), .keep_alive = false}; }
+
+bool is_loopback_name(std::string_view host) {
+  if (host.starts_with('[')) return host.substr(0, host.find(']') + 1) == "[::1]";
+  host = host.substr(0, host.find(':'));
+  return host == "localhost" || host == "127.0.0.1";
+}
+
+struct Line {
+  std::string name;
+  std::string_view value;
+};
+
+/// The headers of a head, or why they are none.
+std::optional<Head> split(std::string_view text, const GuardLimits& limits, std::vector<Line>& lines) {
+  while (!text.empty()) {
+    const std::size_t end = text.find("\r\n");
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end + 2);
+    const std::size_t colon = line.find(':');
+    if (colon == std::string_view::npos || !is_token(line.substr(0, colon)))
+      return refused(400, "a header line is not \"name: value\"");
+    const std::string_view value = trimmed(line.substr(colon + 1));
+    if (!is_value(value)) return refused(400, "a header value holds control characters");
+    lines.push_back({lower(line.substr(0, colon)), value});
+    if (lines.size() > limits.headers)
+      return refused(431, "more than " + std::to_string(limits.headers) + " headers");
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::size_t> head_end(std::string_view bytes) {
+  const std::size_t at = bytes.find("\r\n\r\n");
+  return at == std::string_view::npos ? std::nullopt : std::optional(at + 4);
+}
+
+Head judge(std::string_view head, const GuardLimits& limits) {
+  if (head.size() > limits.head_bytes)
+    return refused(431, "the head is longer than " + std::to_string(limits.head_bytes) + " bytes");
+  if (head.find('\0') != std::string_view::npos) return refused(400, "the head holds a NUL");
+  const std::size_t first = head.find("\r\n");
+  const std::string_view request = head.substr(0, first);
+  const std::size_t a = request.find(' '), b = request.rfind(' ');
+  if (a == std::string_view::npos || a == b) return refused(400, "the request line is not \"METHOD target HTTP/1.1\"");
+  const std::string_view method = request.substr(0, a), target = request.substr(a + 1, b - a - 1),
+                         protocol = request.substr(b + 1);
+  if (!is_token(method)) return refused(400, "the method is not a word");
+  if (protocol != "HTTP/1.1" && protocol != "HTTP/1.0") return refused(505, "only HTTP/1.1 and 1.0 are spoken here");
+  if (target.size() > limits.target_bytes)
+    return refused(414, "the URI is longer than " + std::to_string(limits.target_bytes) + " bytes");
+  if (!is_target(target)) return refused(400, "the request target is not a path");
+
+  std::vector<Line> lines;
+  // Without the empty line at the end.
+  if (auto bad = split(head.substr(first + 2, head.size() - first - 4), limits, lines)) return *bad;
+
+  Head good{.method = std::string(method), .keep_alive = protocol == "HTTP/1.1"};
+  good.rewritten = good.method + " " + std::string(target) + " HTTP/1.1\r\n";
+  const auto count = [&](std::string_view name) {
+    return std::count_if(lines.begin(), lines.end(), [&](const Line& line) { return line.name == name; });
+  };
+  if (count("transfer-encoding") > 0 && count("content-length") > 0)
+    return refused(400, "Content-Length and Transfer-Encoding exclude each other");
+  if (count("transfer-encoding") > 0) return refused(411, "chunked bodies are not taken; send a Content-Length");
+  if (count("content-length") > 1) return refused(400, "Content-Length stands more than once");
+  if (count("host") > 1 || (count("host") == 0 && good.keep_alive)) return refused(400, "exactly one Host is needed");
+  std::string_view host;
+  for (const Line& line : lines) {
+    if (line.name == "content-length") {
+      const char* end = line.value.data() + line.value.size();
+      const auto [stop, error] = std::from_chars(line.value.data(), end, good.body);
+      if (error == std::errc::result_out_of_range) return refused(413, "the body is too large");
+      if (error != std::errc() || stop != end) return refused(400, "Content-Length is not a number");
+      if (good.body > limits.body_bytes)
+        return refused(413, "the body is larger than " + std::to_string(limits.body_bytes) + " bytes");
+    } else if (line.name == "connection") {
+      if (lower(line.value).find("close") != std::string::npos) good.keep_alive = false;
+    } else if (line.name == "expect") {
+      if (lower(line.value) != "100-continue") return refused(417, "only 100-continue can be expected");
+      good.expects_continue = true;
+    } else if (line.name == "content-type") {
+      if (hides_control(line.value)) return refused(400, "a header value hides control characters");
+      good.rewritten += std::string(body_type_header) + ": " + std::string(line.value) + "\r\n";
+    } else if (std::find(handed_on.begin(), handed_on.end(), line.name) != handed_on.end()) {
+      if (count(line.name) > 1 && line.name != "accept" && line.name != "prefer" && line.name != "if-none-match")
+        return refused(400, line.name + " stands more than once");
+      if (hides_control(line.value)) return refused(400, "a header value hides control characters");
+      if (line.name == "host") host = line.value;
+      good.rewritten += line.name + ": " + std::string(line.value) + "\r\n";
+    }
+  }
+  if (host.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:[]_") !=
+      std::string_view::npos)
+    return refused(400, "Host is not a name");
+  if (limits.loopback_names_only && !host.empty() && !is_loopback_name(host))
+    return refused(403, "without tokens talusd answers only to localhost, 127.0.0.1 and [::1]");
+  if (limits.loopback_names_only && count("origin") > 0) {
+    const auto origin = std::find_if(lines.begin(), lines.end(), [](const Line& line) { return line.name == "origin"; });
+    if (origin->value != "http://" + std::string(host))
+      return refused(403, "without tokens talusd takes nothing from pages of other sites");
+  }
+  good.rewritten += "Content-Length: " + std::to_string(good.body) + "\r\n\r\n";
+  return good;
+}
+
+}  // namespace talus::service

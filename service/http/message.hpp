@@ -1,0 +1,56 @@
+#pragma once
+// A request as the handlers see it, and their answer; neither knows the HTTP library.
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "support/json.hpp"
+
+namespace talus::service {
+
+enum class Role { none, read, submit };
+
+struct Incoming {
+  std::string method, path;
+  std::multimap<std::string, std::string> query;
+  std::map<std::string, std::string> headers;  ///< names in small letters
+  std::string body;
+
+  std::string header(const std::string& name) const {
+    const auto at = headers.find(name);
+    return at == headers.end() ? "" : at->second;
+  }
+  std::optional<std::string> parameter(const std::string& name) const {
+    const auto at = query.find(name);
+    return at == query.end() ? std::nullopt : std::optional(at->second);
+  }
+};
+
+/// Writes one piece of a stream; false: the other side has gone, or we are stopping.
+using Sink = std::function<bool(const std::string&)>;
+
+struct Answer {
+  int status = 200;
+  std::string type = "application/json";
+  std::string body = {};
+  std::vector<std::pair<std::string, std::string>> headers = {};
+  std::function<void(const Sink&)> stream = {};  ///< instead of a body
+};
+
+/// One request on its way: who asks, and what the path holds.
+struct Exchange {
+  const Incoming& request;
+  std::vector<std::string> captured = {};  ///< what stands for the {} of the route
+  std::string subject = "local";
+  Role role = Role::submit;
+  std::string base = {};  ///< "http://127.0.0.1:8080": before the path of absolute links
+};
+
+inline Answer json_answer(const Json& body, int status = 200) {
+  return {.status = status, .body = dump(body) + "\n"};
+}
+
+}  // namespace talus::service

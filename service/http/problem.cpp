@@ -1,0 +1,120 @@
+#include "http/problem.hpp"
+
+#include "queue/database.hpp"
+#include "support/files.hpp"
+#include "support/log.hpp"
+
+namespace talus::service {
+namespace {
+
+struct Row {
+  Reason reason;
+  int status;
+  const char* type;
+  const char* title;
+};
+
+#define OGC_EXCEPTION "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
+
+constexpr Row table[] = {
+    {Reason::bad_request, 400, "urn:talus:problem:bad-request", "Bad request"},
+    {Reason::unauthorized, 401, "urn:talus:problem:unauthorized", "A token is needed"},
+    {Reason::forbidden, 403, "urn:talus:problem:forbidden", "Not allowed"},
+    {Reason::not_found, 404, "urn:talus:problem:not-found", "Not found"},
+    {Reason::no_such_process, 404, OGC_EXCEPTION "no-such-process", "No such process"},
+    {Reason::no_such_job, 404, OGC_EXCEPTION "no-such-job", "No such job"},
+    {Reason::result_not_ready, 404, OGC_EXCEPTION "result-not-ready", "The result is not ready"},
+    {Reason::job_dismissed, 410, "urn:talus:problem:job-dismissed", "The job was dismissed"},
+    {Reason::method_not_allowed, 405, "urn:talus:problem:method-not-allowed", "Method not allowed"},
+    {Reason::not_acceptable, 406, "urn:talus:problem:not-acceptable", "Not to be had in that form"},
+    {Reason::conflict, 409, "urn:talus:problem:conflict", "Not in this state"},
+    {Reason::length_required, 411, "urn:talus:problem:length-required", "A Content-Length is needed"},
+    {Reason::too_large, 413, "urn:talus:problem:too-large", "Too large"},
+    {Reason::uri_too_long, 414, "urn:talus:problem:uri-too-long", "The URI is too long"},
+    {Reason::unsupported_media_type, 415, "urn:talus:problem:unsupported-media-type", "Unsupported media type"},
+    {Reason::unprocessable, 422, "urn:talus:problem:unprocessable", "Cannot be done"},
+    {Reason::quota, 422, "urn:talus:problem:quota-exceeded", "Over the quota"},
+    {Reason::queue_full, 429, "urn:talus:problem:queue-full", "The queue is full"},
+    {Reason::headers_too_large, 431, "urn:talus:problem:headers-too-large", "The headers are too large"},
+    {Reason::internal, 500, "urn:talus:problem:internal", "Internal error"},
+    {Reason::not_implemented, 501, "urn:talus:problem:not-implemented", "Not implemented"},
+    {Reason::unavailable, 503, "urn:talus:problem:unavailable", "Not available now"},
+    {Reason::timeout, 504, "urn:talus:problem:timeout", "Took too long"},
+    {Reason::disk_full, 507, "urn:talus:problem:disk-full", "No room on the disk"},
+};
+
+const Row& row_of(Reason reason) {
+  for (const Row& row : table)
+    if (row.reason == reason) return row;
+  return row_of(Reason::internal);
+}
+
+Answer document(int status, const char* type, const char* title, const Refusal& refusal, const std::string& accept) {
+  Json body = {{"type", type}, {"title", title}, {"status", status}, {"detail", refusal.what()}};
+  if (!refusal.faults.empty()) {
+    body["errors"] = Json::array();
+    for (const Fault& fault : refusal.faults)
+      body["errors"].push_back({{"pointer", fault.pointer}, {"message", fault.message}});
+  }
+  Answer answer = json_answer(body, status);
+  if (accept.find("application/problem+json") != std::string::npos) answer.type = "application/problem+json";
+  if (!refusal.allow.empty()) answer.headers.emplace_back("Allow", refusal.allow);
+  if (status == 401) answer.headers.emplace_back("WWW-Authenticate", "Bearer");
+  if (refusal.retry_after) answer.headers.emplace_back("Retry-After", std::to_string(*refusal.retry_after));
+  return answer;
+}
+
+Refusal refusal_of(const StorageError& e) {
+  const bool full = e.kind == StorageError::Kind::full;
+  Refusal refusal(full ? Reason::disk_full : Reason::unavailable, e.what());
+  refusal.retry_after = 30;
+  return refusal;
+}
+
+}  // namespace
+
+Answer problem(const Refusal& refusal, const std::string& accept) {
+  const Row& row = row_of(refusal.reason);
+  return document(row.status, row.type, row.title, refusal, accept);
+}
+
+Answer problem(std::exception_ptr thrown, const std::string& accept) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Refusal& e) {
+    return problem(e, accept);
+  } catch (const StorageError& e) {
+    log_error("storage", {{"why", e.what()}});
+    return problem(refusal_of(e), accept);
+  } catch (const FileError& e) {
+    log_error("files", {{"why", e.what()}});
+    const bool full = e.error == ENOSPC || e.error == EDQUOT;
+    return problem(Refusal(full ? Reason::disk_full : Reason::unavailable,
+                           full ? "there is no room on the disk" : "a file of the service cannot be read or written"),
+                   accept);
+  } catch (const std::exception& e) {
+    log_error("internal", {{"why", e.what()}});
+    return problem(Refusal(Reason::internal, "something went wrong here; it has been logged"), accept);
+  }
+}
+
+Answer problem(int status, const std::string& accept) {
+  for (const Row& row : table)
+    if (row.status == status) return problem(Refusal(row.reason, row.title), accept);
+  const char* title = status_text(status);
+  return document(status, "about:blank", title, Refusal(Reason::bad_request, title), accept);
+}
+
+const char* status_text(int status) {
+  switch (status) {
+    case 408: return "Request timeout";
+    case 417: return "Expectation failed";
+    case 505: return "HTTP version not supported";
+    default: break;
+  }
+  for (const Row& row : table)
+    if (row.status == status) return row.title;
+  return status < 500 ? "Bad request" : "Internal error";
+}
+
+}  // namespace talus::service

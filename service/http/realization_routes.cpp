@@ -1,0 +1,217 @@
+// Ours beneath a study: its histogram as it grows, and its realizations one by one.
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "http/links.hpp"
+#include "http/lookup.hpp"
+
+namespace talus::service {
+namespace {
+
+constexpr int max_bins = 1000, max_edges = 1001, default_limit = 100, max_limit = 1000;
+constexpr std::int64_t most_realizations = 1'000'000'000;
+
+[[noreturn]] void bad(const std::string& name, const std::string& why) {
+  throw Refusal(Reason::bad_request, "a query parameter is not right", {{"?" + name, why}});
+}
+
+std::vector<double> edges_of(const Incoming& request) {
+  std::vector<double> edges;
+  const auto text = request.parameter("edges");
+  if (!text) return edges;
+  for (const std::string& part : comma_list(*text)) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc() || end != part.data() + part.size() || !std::isfinite(value))
+      bad("edges", "must be numbers separated by commas");
+    edges.push_back(value);
+  }
+  const bool grow = std::adjacent_find(edges.begin(), edges.end(), std::greater_equal<>()) == edges.end();
+  if (edges.size() < 2 || edges.size() > max_edges || !grow) bad("edges", "must be 2 to 1001 increasing numbers");
+  return edges;
+}
+
+/// From every bin to the runs in it.
+Json bins_of(const Json& distribution, const Exchange& exchange, const Job& job) {
+  const Json& histogram = distribution.at("histogram");
+  const Json &edges = histogram.at("edges"), &counts = histogram.at("counts");
+  Json bins = Json::array();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const bool last = i + 1 == counts.size();
+    const std::string query = "?quantity=" + distribution.at("quantity").get<std::string>() + "&min=" + edges[i].dump() +
+                              (last ? "&max=" : "&below=") + edges[i + 1].dump();
+    bins.push_back({{"from", edges[i]},
+                    {"to", edges[i + 1]},
+                    {"count", counts[i]},
+                    {"href", exchange.base + "/jobs/" + job.id + "/realizations" + query}});
+  }
+  return bins;
+}
+
+Answer histogram(Exchange& exchange, Service& service) {
+  const Incoming& request = exchange.request;
+  const Job job = study_of(exchange, service);
+  only_parameters(request, {"quantity", "bins", "edges"});
+  const std::string name = request.parameter("quantity").value_or(Json::parse(job.inputs).at("quantity"));
+  const int quantity = quantity_index(name, "?quantity");
+  const auto bins = whole_number(request, "bins", 1, max_bins);
+  const std::vector<double> edges = edges_of(request);
+  if (bins && !edges.empty()) bad("bins", "goes without edges");
+  Json answer = service.jobs.distribution(job, quantity, bins ? std::optional(static_cast<int>(*bins)) : std::nullopt, edges);
+  answer["partial"] = !ended(job.state);
+  answer["bins"] = bins_of(answer, exchange, job);
+  return json_answer(answer);
+}
+
+Json measures_of(const RunResult& result) {
+  Json all = Json::object();
+  for (std::size_t i = 0; i < measure_names.size(); ++i) all[measure_names[i]] = result.measures[i];
+  return all;
+}
+
+Json brief(const Run& run, const Exchange& exchange, const Job& job) {
+  const std::string path = "/jobs/" + job.id + "/realizations/" + std::to_string(run.key.index);
+  Json json = {{"index", run.key.index}, {"state", word(run.state)}};
+  if (run.result) {
+    json["measures"] = measures_of(*run.result);
+    json["digest"] = run.result->digest;
+  }
+  if (run.failure) json["reason"] = run.failure->reason;
+  json["href"] = exchange.base + path;
+  return json;
+}
+
+Answer list(Exchange& exchange, Service& service) {
+  const Incoming& request = exchange.request;
+  const Job job = study_of(exchange, service);
+  only_parameters(request, {"state", "quantity", "min", "below", "max", "after", "limit"});
+  RunFilter filter;
+  if (const auto name = request.parameter("state")) {
+    filter.state = run_state(*name);
+    if (!filter.state) bad("state", "must be queued, leased, done or failed");
+  }
+  filter.measure = quantity_index(request.parameter("quantity").value_or(measure_names[0]), "?quantity");
+  filter.least = real_number(request, "min");
+  filter.below = real_number(request, "below");
+  filter.most = real_number(request, "max");
+  filter.after = whole_number(request, "after", -1, most_realizations).value_or(-1);
+  const auto limit = std::min<std::int64_t>(max_limit, whole_number(request, "limit", 1, 1'000'000).value_or(default_limit));
+  filter.limit = static_cast<int>(limit) + 1;
+  std::vector<Run> runs = service.store.runs(job.number, filter);
+  const bool more = runs.size() > static_cast<std::size_t>(limit);
+  if (more) runs.resize(static_cast<std::size_t>(limit));
+  Json all = Json::array(), links = Json::array();
+  for (const Run& run : runs) all.push_back(brief(run, exchange, job));
+  if (more) {
+    std::string query;
+    for (const auto& [name, value] : request.query)
+      if (name != "after") query += name + "=" + value + "&";
+    links.push_back(link(exchange, "/jobs/" + job.id + "/realizations?" + query + "after=" +
+                                       std::to_string(runs.back().key.index), "next", "The next realizations"));
+  }
+  return json_answer({{"realizations", all}, {"links", links}});
+}
+
+Run run_of(const Exchange& exchange, Service& service, const Job& job) {
+  const std::string& text = exchange.captured.at(1);
+  std::int64_t index = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
+  std::optional<Run> run;
+  if (error == std::errc() && end == text.data() + text.size() && index >= 0)
+    run = service.store.run({job.number, false, index});
+  if (!run) throw Refusal(Reason::not_found, "the study has no such realization");
+  return *run;
+}
+
+Answer one(Exchange& exchange, Service& service) {
+  const Job job = study_of(exchange, service);
+  const Run run = run_of(exchange, service, job);
+  Json json = brief(run, exchange, job);
+  json["seed"] = job.seed;
+  json["case_hash"] = job.case_hash;
+  json["attempt"] = run.attempt;
+  json["command"] = replay_command(run.key, job.seed);
+  if (run.result) {
+    json["mean_friction_angle_deg"] = run.result->mean_friction_angle_deg;
+    json["steps"] = run.result->steps;
+    json["wall_clock_s"] = run.result->wall_clock;
+  }
+  if (run.failure) {
+    if (run.failure->exit_code) json["exit_code"] = *run.failure->exit_code;
+    if (run.failure->signal) json["signal"] = *run.failure->signal;
+    json["log_tail"] = run.failure->log_tail;
+  }
+  const std::string path = "/jobs/" + job.id + "/realizations/" + std::to_string(run.key.index);
+  json["links"] = {link(exchange, path, "self", "This realization"),
+                   link(exchange, path + "/field", "related", "Friction angles before the slide"),
+                   link(exchange, path + "/profile", "related", "The slide at its end")};
+  return json_answer(json);
+}
+
+/// ?format=json|svg, else what the client accepts, else JSON.
+bool wants_svg(const Incoming& request) {
+  only_parameters(request, {"format"});
+  const auto format = request.parameter("format");
+  if (!format) return request.header("accept").find("image/svg+xml") != std::string::npos;
+  if (*format != "json" && *format != "svg") bad("format", "must be json or svg");
+  return *format == "svg";
+}
+
+Answer picture(const std::string& text, bool svg) {
+  return {.type = svg ? "image/svg+xml" : "application/json", .body = text};
+}
+
+Answer field(Exchange& exchange, Service& service) {
+  const Job job = study_of(exchange, service);
+  const Run run = run_of(exchange, service, job);
+  const bool svg = wants_svg(exchange.request);
+  return picture(service.jobs.field(job, run.key.index, svg), svg);
+}
+
+Answer profile(Exchange& exchange, Service& service) {
+  const Job job = study_of(exchange, service);
+  const Run run = run_of(exchange, service, job);
+  const bool svg = wants_svg(exchange.request);
+  if (run.state != RunState::done) throw Refusal(Reason::result_not_ready, "this realization is not done");
+  return picture(service.jobs.profile(job, run.key.index, svg), svg);
+}
+
+Answer retry(Exchange& exchange, Service& service) {
+  if (auto again = told_before(exchange, service)) return *again;
+  const Job job = study_of(exchange, service);
+  service.jobs.retry(job, keeping(exchange, 200, false));
+  return changed(exchange, *service.store.job(job.id), 200, false);
+}
+
+Answer extend(Exchange& exchange, Service& service) {
+  if (auto again = told_before(exchange, service)) return *again;
+  const Job job = study_of(exchange, service);
+  const Json body = parse_json(exchange.request.body);
+  const bool good = body.is_object() && body.contains("realizations") && body.at("realizations").is_number_integer() &&
+                    body.at("realizations") >= 1 && body.at("realizations") <= most_realizations;
+  if (!good || body.size() != 1)
+    throw Refusal(Reason::bad_request, "the body is not right",
+                  {{"/realizations", "must be how many to add, at least 1, and the only member"}});
+  if (!service.jobs.extend(job, body.at("realizations").get<std::int64_t>(), keeping(exchange, 200, false)))
+    if (auto again = told_before(exchange, service)) return *again;
+  return changed(exchange, *service.store.job(job.id), 200, false);
+}
+
+}  // namespace
+
+void add_realization_routes(Router& router, Service& service) {
+  const auto add = [&](const char* method, const std::string& tail, Role role, Answer (*handler)(Exchange&, Service&)) {
+    router.add(method, "/jobs/{}" + tail, role, [&service, handler](Exchange& e) { return handler(e, service); });
+  };
+  add("GET", "/histogram", Role::read, histogram);
+  add("GET", "/realizations", Role::read, list);
+  add("GET", "/realizations/{}", Role::read, one);
+  add("GET", "/realizations/{}/field", Role::read, field);
+  add("GET", "/realizations/{}/profile", Role::read, profile);
+  add("POST", "/retry", Role::submit, retry);
+  add("POST", "/extend", Role::submit, extend);
+}
+
+}  // namespace talus::service

@@ -1,0 +1,39 @@
+#pragma once
+// Which handler a request belongs to.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "http/message.hpp"
+
+namespace talus::service {
+
+using Handler = std::function<Answer(Exchange&)>;
+
+class Router {
+ public:
+  /// @param pattern  "/jobs/{}/results": {} stands for one segment
+  /// @param role     that the bearer must have at least
+  void add(const std::string& method, const std::string& pattern, Role role, Handler handler);
+
+  struct Found {
+    const Handler* handler = nullptr;  ///< none: no such path, or, with `allow`, not this method
+    Role role = Role::none;
+    std::vector<std::string> captured;
+    std::string allow;  ///< the methods of the path
+  };
+  /// HEAD is answered by GET's handler.
+  Found find(const std::string& method, const std::string& path) const;
+
+ private:
+  struct Route {
+    std::string method;
+    std::vector<std::string> segments;
+    Role role;
+    Handler handler;
+  };
+  std::vector<Route> routes_;
+};
+
+}  // namespace talus::service

@@ -1,0 +1,175 @@
+#include "http/server.hpp"
+
+#include <httplib.h>
+#include <netinet/tcp.h>
+
+#include <atomic>
+
+#include "http/problem.hpp"
+
+namespace talus::service {
+namespace {
+
+constexpr int backlog = 1024;  ///< the library's own is 5
+
+/// One judged request as the library's stream: reads come from memory, writes go to the client.
+class RequestStream : public httplib::Stream {
+ public:
+  RequestStream(Connection& connection, const WholeRequest& request)
+      : connection_(connection), input_(request.head.rewritten + request.body) {}
+
+  bool is_readable() const override { return true; }
+  bool is_writable() const override { return true; }
+  // Newer versions of the library ask these as well.
+  bool wait_readable() const { return true; }
+  bool wait_writable() const { return true; }
+  time_t duration() const { return 0; }
+
+  ssize_t read(char* data, size_t size) override {
+    const std::size_t n = std::min(size, input_.size() - at_);
+    input_.copy(data, n, at_);
+    at_ += n;
+    return static_cast<ssize_t>(n);
+  }
+  ssize_t write(const char* data, size_t size) override {
+    return connection_.write(data, size) ? static_cast<ssize_t>(size) : -1;
+  }
+  void get_remote_ip_and_port(std::string& ip, int& port) const override { ip.clear(), port = 0; }
+  void get_local_ip_and_port(std::string& ip, int& port) const override { ip.clear(), port = 0; }
+  socket_t socket() const override { return connection_.socket(); }
+
+ private:
+  Connection& connection_;
+  std::string input_;
+  std::size_t at_ = 0;
+};
+
+Incoming incoming(const httplib::Request& request) {
+  Incoming in;
+  in.method = request.method;
+  in.path = request.path;
+  for (const auto& [name, value] : request.params) in.query.emplace(name, value);
+  for (const auto& [name, value] : request.headers) {
+    std::string small;
+    for (const char c : name) small += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::string& slot = in.headers[small == "x-body-type" ? "content-type" : small];
+    slot += slot.empty() ? value : ", " + value;  // RFC 9110 5.2
+  }
+  in.body = request.body;
+  return in;
+}
+
+void fill(httplib::Response& response, Answer answer) {
+  response.status = answer.status;
+  response.set_header("X-Content-Type-Options", "nosniff");
+  for (const auto& [name, value] : answer.headers) response.set_header(name, value);
+  if (answer.stream) {
+    response.set_header("Cache-Control", "no-store");
+    response.set_chunked_content_provider(answer.type, [stream = answer.stream](size_t, httplib::DataSink& sink) {
+      stream([&sink](const std::string& piece) { return sink.write(piece.data(), piece.size()); });
+      sink.done();
+      return true;
+    });
+  } else if (answer.status != 204 && answer.status != 304) {
+    response.set_content(answer.body, answer.type);
+  }
+}
+
+/// A refusal written without the library.
+std::string raw_problem(const BadRequest& bad) {
+  const Answer answer = problem(bad.status, "");
+  Json body = Json::parse(answer.body);
+  body["detail"] = bad.why;
+  const std::string text = dump(body) + "\n";
+  return "HTTP/1.1 " + std::to_string(bad.status) + " " + status_text(bad.status) +
+         "\r\nContent-Type: application/json\r\nContent-Length: " + std::to_string(text.size()) +
+         "\r\nConnection: close\r\n\r\n" + text;
+}
+
+}  // namespace
+
+class Server::Implementation : public httplib::Server {
+ public:
+  Implementation(ServerSettings settings, std::function<Answer(const Incoming&)> handle)
+      : settings_(std::move(settings)), handle_(std::move(handle)) {
+    new_task_queue = [this] { return new httplib::ThreadPool(static_cast<size_t>(settings_.threads)); };
+    set_payload_max_length(settings_.guard.body_bytes + 1);
+    set_socket_options([this](socket_t fd) {
+      const int yes = 1;
+      ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+      ::fcntl(fd, F_SETFD, FD_CLOEXEC);
+      listening_ = fd;
+    });
+    const auto answer = [this](const httplib::Request& request, httplib::Response& response) {
+      fill(response, handle_(incoming(request)));
+    };
+    const std::string any = R"([\s\S]*)";
+    Get(any, answer), Post(any, answer), Put(any, answer), Patch(any, answer), Delete(any, answer), Options(any, answer);
+    // Methods that the library knows but gives nobody: TRACE, CONNECT.
+    set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      if (request.method != "TRACE" && request.method != "CONNECT" && request.method != "PRI")
+        return HandlerResponse::Unhandled;
+      fill(response, handle_(incoming(request)));
+      return HandlerResponse::Handled;
+    });
+    set_error_handler([](const httplib::Request& request, httplib::Response& response) {
+      if (response.body.empty() && response.status >= 400)
+        fill(response, problem(response.status, request.get_header_value("Accept")));
+    });
+  }
+
+  int open(const std::string& address, int port) {
+    const int bound = port == 0 ? bind_to_any_port(address) : bind_to_port(address, port) ? port : 0;
+    if (bound > 0) ::listen(listening_, backlog);
+    return bound > 0 ? bound : 0;
+  }
+  void end() {
+    stopping_ = true;
+    stop();
+  }
+
+ private:
+  bool process_and_close_socket(socket_t fd) override {
+    ::fcntl(fd, F_SETFD, FD_CLOEXEC);
+    const int yes = 1;
+    ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    Connection connection(fd, settings_.guard, settings_.timing, [this] { return stopping_.load(); });
+    for (bool more = true; more && !stopping_;) {
+      const auto next = connection.next();
+      if (std::holds_alternative<Closed>(next)) return true;
+      if (const auto* bad = std::get_if<BadRequest>(&next)) {
+        connection.write(raw_problem(*bad));
+        break;
+      }
+      const auto& request = std::get<WholeRequest>(next);
+      RequestStream stream(connection, request);
+      more = serve_one(*this, stream, !request.head.keep_alive || stopping_) && request.head.keep_alive;
+    }
+    connection.finish();
+    return true;
+  }
+
+  /// process_request() has got more parameters since 0.11.
+  template <class Self>
+  static bool serve_one(Self& self, httplib::Stream& stream, bool last) {
+    bool closed = false;
+    if constexpr (requires { self.process_request(stream, last, closed, nullptr); })
+      return self.process_request(stream, last, closed, nullptr) && !closed;
+    else
+      return self.process_request(stream, std::string(), 0, std::string(), 0, last, closed, nullptr) && !closed;
+  }
+
+  ServerSettings settings_;
+  std::function<Answer(const Incoming&)> handle_;
+  socket_t listening_ = INVALID_SOCKET;
+  std::atomic<bool> stopping_{false};
+};
+
+Server::Server(ServerSettings settings, std::function<Answer(const Incoming&)> handle)
+    : implementation_(std::make_unique<Implementation>(std::move(settings), std::move(handle))) {}
+Server::~Server() = default;
+int Server::bind(const std::string& address, int port) { return implementation_->open(address, port); }
+void Server::serve() { implementation_->listen_after_bind(); }
+void Server::stop() { implementation_->end(); }
+
+}  // namespace talus::service

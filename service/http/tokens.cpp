@@ -1,0 +1,62 @@
+#include "http/tokens.hpp"
+
+#include <sstream>
+#include <stdexcept>
+
+#include "support/digest.hpp"
+#include "support/files.hpp"
+
+namespace talus::service {
+namespace {
+
+bool is_subject(const std::string& text) {
+  return !text.empty() && text.size() <= 64 &&
+         text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._@-") == std::string::npos;
+}
+
+std::optional<Role> role_of(const std::string& word) {
+  if (word == "submit") return Role::submit;
+  if (word == "read") return Role::read;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Tokens::Tokens(const std::filesystem::path& file) : wanted_(true) {
+  const auto text = read_file(file, 1 << 20);
+  if (!text) throw std::runtime_error("there is no tokens file " + file.string());
+  std::istringstream lines(*text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::string role, subject, hash, rest;
+    if (!(words >> role)) continue;
+    words >> subject >> hash >> rest;
+    const bool hex = hash.size() == 64 && hash.find_first_not_of("0123456789abcdef") == std::string::npos;
+    if (!role_of(role) || !is_subject(subject) || !hex || !rest.empty())
+      throw std::runtime_error(file.string() + ":" + std::to_string(number) +
+                               ": not \"submit|read SUBJECT SHA256\"; talusd --new-token makes such lines");
+    entries_.push_back({{subject, *role_of(role)}, hash});
+  }
+  if (entries_.empty()) throw std::runtime_error(file.string() + " holds no token");
+}
+
+std::optional<Bearer> Tokens::find(const std::string& authorization) const {
+  constexpr std::string_view scheme = "Bearer ";
+  if (!authorization.starts_with(scheme)) return std::nullopt;
+  const std::string hash = sha256(std::string_view(authorization).substr(scheme.size()));
+  std::optional<Bearer> found;
+  for (const Entry& entry : entries_)  // all of them, so that the time does not tell which
+    if (equal_in_constant_time(entry.hash, hash)) found = entry.bearer;
+  return found;
+}
+
+std::pair<std::string, std::string> new_token(const std::string& role, const std::string& subject) {
+  if (!role_of(role) || !is_subject(subject))
+    throw std::runtime_error("--new-token takes submit or read, and a subject of letters, digits and . _ @ -");
+  const std::string token = random_hex(32);
+  return {token, role + " " + subject + " " + sha256(token)};
+}
+
+}  // namespace talus::service

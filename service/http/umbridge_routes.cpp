@@ -1,0 +1,178 @@
+// UM-Bridge 1.0 (https://um-bridge-benchmarks.readthedocs.io): the solver as a function for any client of uncertainty
+// quantification. A model is a case in --models; its input is the coefficients of its random field [xi_1..xi_M] and, if
+// config.parameters names some, a second vector of their values; its output is the five measures of the front.
+//
+// The protocol wants, in this order: is the model known, is the feature there, are the inputs right; errors are
+// {"error": {"type", "message"}} with status 400.
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+
+#include "http/service.hpp"
+#include "support/files.hpp"
+
+namespace talus::service {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t max_case_bytes = std::size_t{64} << 20;
+
+struct Parameter {
+  const char* name;
+  const char* pointer;
+};
+constexpr Parameter parameters[] = {{"particle_spacing_m", "/particle_spacing_m"},
+                                    {"end_s", "/time/end_s"},
+                                    {"density_kg_m3", "/material/density_kg_m3"},
+                                    {"cohesion_Pa", "/material/cohesion_Pa"},
+                                    {"viscosity_Pa_s", "/material/viscosity_Pa_s"},
+                                    {"log_mean", "/random_field/log_mean"},
+                                    {"log_stdev", "/random_field/log_stdev"}};
+
+struct ProtocolError {
+  const char* type;
+  std::string message;
+};
+[[noreturn]] void invalid(const std::string& message) { throw ProtocolError{"InvalidInput", message}; }
+
+std::vector<std::string> models(const Config& config) {
+  std::vector<std::string> names;
+  if (config.models.empty()) return names;
+  for (const auto& entry : fs::directory_iterator(config.models))
+    if (entry.path().extension() == ".json") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The case of the model that a request names.
+Json model_of(const Json& body, const Config& config) {
+  const std::string name = body.is_object() && body.contains("name") && body.at("name").is_string()
+                               ? body.at("name").get<std::string>()
+                               : std::string();
+  const std::vector<std::string> known = models(config);
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    throw ProtocolError{"ModelNotFound", "Model '" + name + "' is not served here"};
+  return Json::parse(read_file(config.models / (name + ".json"), max_case_bytes).value_or("{}"));
+}
+
+/// The parameters that config names.
+std::vector<const Parameter*> wanted(const Json& body) {
+  std::vector<const Parameter*> all;
+  if (!body.contains("config") || body.at("config").is_null()) return all;
+  const Json& config = body.at("config");
+  if (!config.is_object()) invalid("config must be an object");
+  for (const auto& [key, value] : config.items())
+    if (key != "parameters") invalid("config." + key + " is not known here; only parameters is");
+  if (!config.contains("parameters")) return all;
+  if (!config.at("parameters").is_array()) invalid("config.parameters must be an array of names");
+  for (const Json& name : config.at("parameters")) {
+    const auto at = std::find_if(std::begin(parameters), std::end(parameters), [&](const Parameter& p) { return name == p.name; });
+    if (at == std::end(parameters)) invalid("config.parameters: " + dump(name) + " is not a parameter here");
+    if (std::find(all.begin(), all.end(), at) != all.end()) invalid(std::string("config.parameters names ") + at->name + " twice");
+    all.push_back(at);
+  }
+  return all;
+}
+
+/// How many coefficients a case takes; asked of talus once for each text.
+class Terms {
+ public:
+  std::size_t of(const Json& document, Jobs& jobs) {
+    if (!document.contains("random_field") || document.at("random_field").is_null()) return 0;
+    const std::string key = dump(document);
+    {
+      const std::lock_guard lock(mutex_);
+      if (const auto at = known_.find(key); at != known_.end()) return at->second;
+    }
+    const Json demand = jobs.validate(document, "");
+    const std::size_t terms = demand.contains("field") ? demand.at("field").at("terms").get<std::size_t>() : 0;
+    const std::lock_guard lock(mutex_);
+    if (known_.size() > 100) known_.clear();
+    return known_[key] = terms;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::size_t> known_;
+};
+
+std::vector<std::size_t> sizes(const Json& body, const Json& document, Service& service, Terms& terms) {
+  std::vector<std::size_t> all = {terms.of(document, service.jobs)};
+  if (const auto names = wanted(body); !names.empty()) all.push_back(names.size());
+  return all;
+}
+
+Json evaluate(const Json& body, Json document, Service& service, Terms& terms) {
+  const std::vector<std::size_t> expected = sizes(body, document, service, terms);
+  if (!body.contains("input") || !body.at("input").is_array()) invalid("input must be an array of arrays of numbers");
+  const Json& input = body.at("input");
+  if (input.size() != expected.size())
+    invalid("input has " + std::to_string(input.size()) + " vectors, the model takes " + std::to_string(expected.size()));
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    if (!input[i].is_array() || input[i].size() != expected[i])
+      invalid("input vector " + std::to_string(i) + " must have " + std::to_string(expected[i]) + " numbers");
+    for (const Json& value : input[i])
+      if (!value.is_number()) invalid("input vector " + std::to_string(i) + " holds what is no number");
+  }
+  if (expected[0] > 0) document["random_field"]["xi"] = input[0];
+  const std::vector<const Parameter*> names = wanted(body);
+  for (std::size_t i = 0; i < names.size(); ++i) document[Json::json_pointer(names[i]->pointer)] = input[1][i];
+  document.erase("study");
+  const Json result = service.jobs.evaluate(document);
+  Json front = Json::array();
+  for (const char* name : measure_names) front.push_back(result.at(name));
+  return {{"output", Json::array({front})}};
+}
+
+Answer error_answer(const ProtocolError& e) {
+  return json_answer({{"error", {{"type", e.type}, {"message", e.message}}}}, 400);
+}
+
+Answer guarded(const std::function<Json()>& action) try {
+  return json_answer(action());
+} catch (const ProtocolError& e) {
+  return error_answer(e);
+} catch (const Refusal& e) {
+  if (e.reason != Reason::bad_request) throw;
+  std::string message = e.what();
+  for (const Fault& fault : e.faults) message += "; " + fault.pointer + " " + fault.message;
+  return error_answer({"InvalidInput", message});
+}
+
+}  // namespace
+
+void add_umbridge_routes(Router& router, Service& service) {
+  const auto terms = std::make_shared<Terms>();
+  router.add("GET", "/Info", Role::read, [&service](Exchange&) {
+    return json_answer({{"protocolVersion", 1.0}, {"models", models(service.config)}});
+  });
+  using Feature = std::function<Json(const Json& body, const Json& document)>;
+  const auto post = [&](const char* path, Role role, Feature feature) {
+    router.add("POST", path, role, [&service, feature](Exchange& exchange) {
+      return guarded([&] {
+        const Json body = parse_json(exchange.request.body);
+        return feature(body, model_of(body, service.config));
+      });
+    });
+  };
+  post("/ModelInfo", Role::read, [](const Json&, const Json&) -> Json {
+    return {{"support", {{"Evaluate", true}, {"Gradient", false}, {"ApplyJacobian", false}, {"ApplyHessian", false}}}};
+  });
+  post("/InputSizes", Role::read, [&service, terms](const Json& body, const Json& document) -> Json {
+    return {{"inputSizes", sizes(body, document, service, *terms)}};
+  });
+  post("/OutputSizes", Role::read, [](const Json&, const Json&) -> Json {
+    return {{"outputSizes", {measure_names.size()}}};
+  });
+  post("/Evaluate", Role::submit, [&service, terms](const Json& body, const Json& document) {
+    return evaluate(body, document, service, *terms);
+  });
+  for (const char* path : {"/Gradient", "/ApplyJacobian", "/ApplyHessian"})
+    post(path, Role::read, [path](const Json&, const Json&) -> Json {
+      throw ProtocolError{"UnsupportedFeature", std::string(path + 1) + " is not supported by this model"};
+    });
+}
+
+}  // namespace talus::service

@@ -1,0 +1,112 @@
+#include "jobs/commands.hpp"
+
+#include <charconv>
+
+namespace talus::service {
+namespace {
+
+constexpr std::uint64_t quick_memory = std::uint64_t{4} << 30;
+constexpr double bytes_per_particle = 3000.0;  ///< several times what a run was measured to take
+constexpr double bytes_at_least = 2e9;         ///< address space of program, libraries and thread stacks
+
+std::string number(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+}  // namespace
+
+Command Commands::quick(std::vector<std::string> arguments) const {
+  arguments.insert(arguments.begin(), config_.program.string());
+  Command command{.arguments = std::move(arguments)};
+  if (config_.memory_bytes != 1) command.limits.memory_bytes = quick_memory;
+  command.limits.cpu_seconds = 120;
+  command.limits.file_bytes = config_.file_bytes;
+  return command;
+}
+
+/// memory_bytes 0: from the size of the case; 1: no limit (sanitizers reserve terabytes of address space).
+Limits Commands::run_limits(double particles) const {
+  Limits limits;
+  if (config_.memory_bytes > 1) limits.memory_bytes = config_.memory_bytes;
+  if (config_.memory_bytes == 0)
+    limits.memory_bytes = static_cast<std::uint64_t>(bytes_at_least + bytes_per_particle * particles);
+  limits.cpu_seconds =
+      static_cast<std::uint64_t>(config_.time_limit.count()) * static_cast<std::uint64_t>(config_.threads) + 60;
+  limits.file_bytes = config_.file_bytes;
+  return limits;
+}
+
+Command Commands::validate(const std::filesystem::path& case_file) const {
+  return quick({"validate", case_file.string(), "--json"});
+}
+
+Command Commands::prepare(const std::filesystem::path& case_file, const StudyDirectory& study,
+                          std::int64_t realizations, std::int64_t seed) const {
+  return quick({"study", case_file.string(), "--out", study.root.string(), "--realizations",
+                std::to_string(realizations), "--seed", std::to_string(seed), "--prepare"});
+}
+
+Command Commands::run(const StudyDirectory& study, const Claim& claim, bool resume, double particles) const {
+  Command command{.arguments = {config_.program.string(), "run", study.resolved_case().string(), "--realization",
+                                std::to_string(claim.run.floor ? 0 : claim.run.index), "--seed",
+                                std::to_string(claim.seed), "--threads", std::to_string(config_.threads), "--out",
+                                study.work(claim.run).string(), "--study-worker"},
+                  .threads = config_.threads,
+                  .limits = run_limits(particles),
+                  .niceness = config_.niceness};
+  if (claim.run.floor)
+    command.arguments.insert(command.arguments.end(), {"--perturbation", perturbation(claim.run.index)});
+  if (resume) command.arguments.emplace_back("--resume");
+  return command;
+}
+
+Command Commands::replay(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
+                         const std::filesystem::path& out) const {
+  Command command = quick({"run", study.resolved_case().string(), "--realization", std::to_string(run.index), "--seed",
+                           std::to_string(seed), "--threads", std::to_string(config_.threads), "--out", out.string(),
+                           "--study-worker"});
+  command.limits = run_limits(0.0);
+  command.limits.memory_bytes = config_.memory_bytes > 1 ? config_.memory_bytes : 0;
+  command.threads = config_.threads;
+  command.niceness = config_.niceness;
+  return command;
+}
+
+Command Commands::median(const std::filesystem::path& case_file, const std::filesystem::path& out) const {
+  Command command = quick({"run", case_file.string(), "--seed", "0", "--threads", std::to_string(config_.threads),
+                           "--out", out.string(), "--study-worker"});
+  command.limits = run_limits(0.0);
+  command.limits.memory_bytes = config_.memory_bytes > 1 ? config_.memory_bytes : 0;
+  command.threads = config_.threads;
+  command.niceness = config_.niceness;
+  return command;
+}
+
+Command Commands::stats(const StudyDirectory& study) const {
+  return quick({"stats", study.root.string(), "--from-runs"});
+}
+
+Command Commands::distribution(const StudyDirectory& study, int quantity, std::optional<int> bins,
+                               const std::vector<double>& edges) const {
+  Command command = quick({"stats", study.root.string(), "--from-runs", "--quantity",
+                           measure_names.at(static_cast<std::size_t>(quantity))});
+  if (bins) command.arguments.insert(command.arguments.end(), {"--bins", std::to_string(*bins)});
+  if (edges.empty()) return command;
+  std::string list = "--edges=";
+  for (const double edge : edges) list += (list.back() == '=' ? "" : ",") + number(edge);
+  command.arguments.push_back(std::move(list));
+  return command;
+}
+
+Command Commands::field(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
+                        const std::filesystem::path& out) const {
+  return quick({"field", study.resolved_case().string(), "--realization", std::to_string(run.index), "--seed",
+                std::to_string(seed), "--out", out.string(), "--json"});
+}
+
+Command Commands::profile(const std::filesystem::path& run_directory, const std::filesystem::path& out) const {
+  return quick({"profile", run_directory.string(), "--out", out.string()});
+}
+
+}  // namespace talus::service

@@ -1,0 +1,45 @@
+#pragma once
+// Every command line that talusd starts. They are built from our own paths and from numbers, never from text of a
+// request.
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "jobs/config.hpp"
+#include "jobs/study_directory.hpp"
+#include "process/child.hpp"
+
+namespace talus::service {
+
+class Commands {
+ public:
+  explicit Commands(const Config& config) : config_(config) {}
+
+  Command validate(const std::filesystem::path& case_file) const;
+  /// Makes `study` the directory of a study, or a longer one.
+  Command prepare(const std::filesystem::path& case_file, const StudyDirectory& study, std::int64_t realizations,
+                  std::int64_t seed) const;
+  /// @param particles  of the case: the memory limit follows from them
+  Command run(const StudyDirectory& study, const Claim& claim, bool resume, double particles) const;
+  /// The same realization into another directory, with its snapshots.
+  Command replay(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
+                 const std::filesystem::path& out) const;
+  /// A run without random numbers, for UM-Bridge.
+  Command median(const std::filesystem::path& case_file, const std::filesystem::path& out) const;
+  Command stats(const StudyDirectory& study) const;
+  /// One quantity with `bins` or `edges`, or, with neither, as in study.json.
+  Command distribution(const StudyDirectory& study, int quantity, std::optional<int> bins,
+                       const std::vector<double>& edges) const;
+  Command field(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
+                const std::filesystem::path& out) const;
+  /// @param out  ends in .json or .svg
+  Command profile(const std::filesystem::path& run_directory, const std::filesystem::path& out) const;
+
+ private:
+  Command quick(std::vector<std::string> arguments) const;
+  Limits run_limits(double particles) const;
+  const Config& config_;
+};
+
+}  // namespace talus::service

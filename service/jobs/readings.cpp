@@ -1,0 +1,127 @@
+// What is read from a job's files or asked of talus about them.
+
+#include <algorithm>
+
+#include "jobs/jobs.hpp"
+#include "support/digest.hpp"
+#include "support/files.hpp"
+
+namespace talus::service {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::seconds;
+
+constexpr std::size_t cached = 64;
+constexpr std::size_t profiles_kept = 16;  ///< of a job
+constexpr std::size_t max_bytes = std::size_t{256} << 20;
+
+/// Removes all but the newest few files.
+void prune(const fs::path& directory, std::size_t keep) {
+  std::vector<std::pair<fs::file_time_type, fs::path>> files;
+  for (const auto& entry : fs::directory_iterator(directory)) files.emplace_back(entry.last_write_time(), entry.path());
+  std::sort(files.rbegin(), files.rend());
+  std::error_code ignored;
+  for (std::size_t i = keep; i < files.size(); ++i) fs::remove(files[i].second, ignored);
+}
+
+[[noreturn]] void broke(const Outcome& outcome, const char* what) {
+  throw Refusal(Reason::internal, std::string(what) + " could not be made" +
+                                      (outcome.err.find("gnuplot") != std::string::npos ? ": gnuplot is missing here" : ""));
+}
+
+/// A directory for one command, gone afterwards.
+struct Scratch {
+  explicit Scratch(const fs::path& parent) : path(parent / random_hex(8)) { fs::create_directories(path); }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  fs::path path;
+};
+
+}  // namespace
+
+Json Jobs::distribution(const Job& job, int quantity, std::optional<int> bins, const std::vector<double>& edges) {
+  const std::string key = job.id + "/" + std::to_string(job.version) + "/" + std::to_string(quantity) + "/" +
+                          std::to_string(bins.value_or(0)) + "/" + Json(edges).dump();
+  {
+    const std::lock_guard lock(cache_lock_);
+    const auto at = std::find_if(cache_.begin(), cache_.end(), [&](const auto& entry) { return entry.first == key; });
+    if (at != cache_.end()) return at->second;
+  }
+  const Outcome outcome = run(commands_.distribution({data_.job(job.id)}, quantity, bins, edges), seconds(60));
+  if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the histogram");
+  Json answer = Json::parse(outcome.out);
+  const std::lock_guard lock(cache_lock_);
+  cache_.emplace_front(key, answer);
+  if (cache_.size() > cached) cache_.pop_back();
+  return answer;
+}
+
+Json Jobs::summary(const Job& job) const {
+  const auto text = read_file(StudyDirectory{data_.job(job.id)}.summary(), max_bytes);
+  if (!text) throw Refusal(Reason::result_not_ready, "there are no statistics of this job");
+  return Json::parse(*text);
+}
+
+std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
+  const Scratch scratch(data_.scratch());
+  const fs::path file = scratch.path / (svg ? "field.svg" : "field.csv");
+  const RunKey run_key{job.number, false, index};
+  const Outcome outcome = run(commands_.field({data_.job(job.id)}, run_key, job.seed, file), seconds(60));
+  if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the field");
+  const std::string text = read_file(file, max_bytes).value_or("");
+  if (svg) return text;
+  Json json = Json::parse(outcome.out);
+  // The columns of the table: x_m, y_m, friction_angle_deg, tan_phi.
+  std::array<Json, 3> columns{Json::array(), Json::array(), Json::array()};
+  std::size_t line = text.find('\n');
+  while (line != std::string::npos && line + 1 < text.size()) {
+    const char* at = text.c_str() + line + 1;
+    for (Json& column : columns) {
+      char* end = nullptr;
+      column.push_back(std::strtod(at, &end));
+      at = end + 1;
+    }
+    line = text.find('\n', line + 1);
+  }
+  json["x_m"] = std::move(columns[0]);
+  json["y_m"] = std::move(columns[1]);
+  json["particle_friction_angle_deg"] = std::move(columns[2]);
+  return dump(json);
+}
+
+std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
+  const StudyDirectory study{data_.job(job.id)};
+  fs::create_directories(study.profiles());
+  const fs::path kept = study.profiles() / (std::to_string(index) + (svg ? ".svg" : ".json"));
+  if (auto text = read_file(kept, max_bytes)) return *text;
+  const Scratch scratch(data_.scratch());
+  const fs::path out = scratch.path / "run";
+  const Outcome again = run(commands_.replay(study, {job.number, false, index}, job.seed, out), seconds(3600), true);
+  if (again.end.signal || again.end.exit_code != 0) broke(again, "the profile");
+  const fs::path json = scratch.path / "profile.json", picture = scratch.path / "profile.svg";
+  const fs::path& wanted = svg ? picture : json;
+  const Outcome made = run(commands_.profile(out, wanted), seconds(60));
+  if (made.end.signal || made.end.exit_code != 0) broke(made, "the profile");
+  const std::string text = read_file(wanted, max_bytes).value_or("");
+  write_file(kept, text);
+  prune(study.profiles(), profiles_kept);
+  return text;
+}
+
+Json Jobs::evaluate(const Json& document) {
+  const Scratch scratch(data_.scratch());
+  write_file(scratch.path / "case.json", dump(document));
+  const Outcome outcome = run(commands_.median(scratch.path / "case.json", scratch.path / "run"), config_.time_limit, true);
+  if (outcome.end.exit_code == 3 && !outcome.end.signal) throw Refusal(Reason::bad_request, outcome.err);
+  const auto text = read_file(scratch.path / "run" / "result.json", 1 << 20);
+  if (outcome.end.signal || outcome.end.exit_code != 0 || !text)
+    throw Refusal(Reason::internal, "the run failed: " + outcome.err);
+  return Json::parse(*text);
+}
+
+}  // namespace talus::service

@@ -1,0 +1,282 @@
+#include "jobs/scheduler.hpp"
+
+#include <signal.h>
+
+#include <algorithm>
+
+#include "support/files.hpp"
+#include "support/log.hpp"
+
+namespace talus::service {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+constexpr milliseconds poll_interval{10};
+constexpr milliseconds idle_interval{500};
+constexpr milliseconds trouble_interval{1000};
+
+}  // namespace
+
+Scheduler::Scheduler(const Config& config, Store& store, Changes& changes)
+    : config_(config),
+      data_{config.data},
+      store_(store),
+      changes_(changes),
+      commands_(config),
+      lease_(std::chrono::duration_cast<milliseconds>(config.lease).count()) {}
+
+Scheduler::~Scheduler() { drain(); }
+
+void Scheduler::start() {
+  remove_orphans();
+  const std::vector<Claim> held = store_.requeue_all();
+  if (!held.empty()) log_info("requeued", {{"runs", held.size()}, {"why", "an earlier talusd held them"}});
+  thread_ = std::thread([this] { loop(); });
+}
+
+void Scheduler::kick() {
+  {
+    const std::lock_guard lock(mutex_);
+    kicked_ = true;
+  }
+  wake_.notify_one();
+}
+
+void Scheduler::wait_for(milliseconds most) {
+  std::unique_lock lock(mutex_);
+  wake_.wait_for(lock, most, [&] { return kicked_ || draining_; });
+  if (!kicked_) return;
+  kicked_ = false;
+  look_ = true;
+  next_beat_ = {};
+  removing_ = 1;
+}
+
+void Scheduler::loop() {
+  while (!draining_) {
+    try {
+      tick();
+      if (told_trouble_) log_info("going_on");
+      told_trouble_ = false;
+      const bool busy = !workers_.empty() || !publishers_.empty() || echo_waiting_;
+      wait_for(busy ? poll_interval : idle_interval);
+    } catch (const std::exception& e) {
+      // A full disk or a database that cannot be written: workers go on, and what they did is recorded once it can be.
+      if (!told_trouble_) log_error("scheduler_waits", {{"why", e.what()}});
+      told_trouble_ = true;
+      look_ = true;
+      std::this_thread::sleep_for(trouble_interval);
+    }
+  }
+}
+
+void Scheduler::tick() {
+  reap();
+  if (Steady::now() >= next_beat_) beat();
+  run_echo();
+  if (removing_ > 0) remove_dismissed();
+  if (look_) {
+    look_ = false;
+    fill();
+    publish_complete();
+  }
+  if (Steady::now() >= next_interim_) publish_interim();
+}
+
+/// Renews the leases of what runs, ends what has lost its own, and puts back what nobody holds. In this order: after a
+/// jump of the clock every lease looks expired.
+void Scheduler::beat() {
+  std::vector<Claim> claims;
+  std::vector<Worker*> holders;
+  for (Worker& worker : workers_) {
+    claims.push_back(worker.claim);
+    holders.push_back(&worker);
+  }
+  for (const std::size_t i : store_.heartbeat(claims, lease_)) {
+    holders[i]->lost = true;
+    holders[i]->child.signal(SIGKILL);
+  }
+  if (store_.requeue_expired(lease_) > 0) look_ = true;
+  look_ = true;
+  next_beat_ = Steady::now() + config_.lease / 6;
+}
+
+void Scheduler::reap() {
+  for (auto worker = workers_.begin(); worker != workers_.end();) {
+    const std::optional<End> end = worker->child.poll();
+    if (!end) {
+      if (Steady::now() > worker->deadline && !worker->timed_out) {
+        worker->timed_out = true;
+        worker->child.signal(SIGKILL);
+      }
+      ++worker;
+      continue;
+    }
+    settle(*worker, *end);  // if it throws, the worker stays and is settled later
+    worker = workers_.erase(worker);
+    done_.running = static_cast<int>(workers_.size());
+    look_ = true;
+    changes_.announce();
+  }
+  for (auto publisher = publishers_.begin(); publisher != publishers_.end();) {
+    const std::optional<End> end = publisher->child.poll();
+    if (!end) {
+      if (Steady::now() > publisher->deadline) publisher->child.signal(SIGKILL);
+      ++publisher;
+      continue;
+    }
+    settle_publisher(*publisher, *end);
+    publisher = publishers_.erase(publisher);
+    changes_.announce();
+  }
+}
+
+bool Scheduler::room_on_disk() { return disk_left(config_.data) >= config_.quotas.disk_bytes / 2; }
+
+/// Starts workers while there are free places, room and work.
+void Scheduler::fill() {
+  while (static_cast<int>(workers_.size()) < config_.workers) {
+    if (!room_on_disk()) throw std::runtime_error("less disk is left than half of --min-disk: no run is started");
+    const std::optional<Claim> claim = store_.claim(lease_);
+    if (!claim) return;
+    try {
+      start_worker(*claim);
+    } catch (...) {
+      store_.give_back(*claim, false);
+      throw;
+    }
+    changes_.announce();
+  }
+}
+
+/// A result that was finished before talusd was killed counts.
+bool Scheduler::adopt(const Claim& claim, const StudyDirectory& study, const Job& job) {
+  const fs::path place = study.result(claim.run), left = study.work(claim.run) / "result.json";
+  if (const auto result = read_result(place, claim.run, claim.seed, job.case_hash))
+    return store_.accept(claim, *result);
+  const auto result = read_result(left, claim.run, claim.seed, job.case_hash);
+  if (!result) return false;
+  rename_durably(left, place);
+  const bool accepted = store_.accept(claim, *result);
+  clear_work(study, claim.run);
+  return accepted;
+}
+
+void Scheduler::start_worker(const Claim& claim) {
+  const std::optional<Job> job = job_of(claim);
+  const StudyDirectory directory = study(claim.job_id);
+  for (const char* name : {"runs", "floor", "work", "profiles"}) fs::create_directories(directory.root / name);
+  if (adopt(claim, directory, *job)) {
+    ++done_.done;
+    look_ = true;
+    return;
+  }
+  const bool resume = fs::exists(directory.checkpoint(claim.run));
+  if (!resume) fs::remove_all(directory.work(claim.run));
+  const fs::path log = directory.log(claim.run);
+  workers_.push_back({.claim = claim,
+                      .study = directory,
+                      .child = Child(commands_.run(directory, claim, resume, job->particles), log, log),
+                      .deadline = Steady::now() + config_.time_limit,
+                      .resumed = resume});
+  done_.running = static_cast<int>(workers_.size());
+}
+
+/// The statistics of jobs whose runs have all ended.
+void Scheduler::publish_complete() {
+  for (const Job& job : store_.complete_jobs()) {
+    const bool under_way = std::any_of(publishers_.begin(), publishers_.end(),
+                                       [&](const Publisher& p) { return p.job.number == job.number; });
+    if (!under_way) start_publisher(job, false);
+  }
+}
+
+/// Looks now and then whether a study that may stop early may do so.
+void Scheduler::publish_interim() {
+  next_interim_ = Steady::now() + std::chrono::seconds(2);
+  std::set<std::string> ids;
+  for (const Worker& worker : workers_) ids.insert(worker.claim.job_id);
+  for (const std::string& id : ids) {
+    const std::optional<Job> job = store_.job(id);
+    if (!job || !job->may_stop_early || ended(job->state) || interim_published_[job->number] == job->done) continue;
+    const bool under_way = std::any_of(publishers_.begin(), publishers_.end(),
+                                       [&](const Publisher& p) { return p.job.number == job->number; });
+    if (under_way) continue;
+    interim_published_[job->number] = job->done;
+    start_publisher(*job, true);
+  }
+}
+
+/// Echo does nothing but wait.
+void Scheduler::run_echo() {
+  if (!echo_waiting_ && !look_) return;
+  const std::vector<Job> waiting = store_.waiting_jobs("echo");
+  echo_waiting_ = !waiting.empty();
+  for (const Job& job : waiting) {
+    const double pause = Json::parse(job.inputs).value("pause", 0.0);
+    if (job.state == JobState::accepted) {
+      store_.start(job.number);
+    } else if (static_cast<double>(system_now() - *job.started) >= 1000.0 * pause || system_now() < *job.started) {
+      store_.finish(job.number, JobState::successful, "done");
+    } else {
+      continue;
+    }
+    changes_.announce();
+  }
+}
+
+/// Removes the directories of jobs that have been dismissed, once none of their processes runs.
+void Scheduler::remove_dismissed() {
+  removing_ = 0;
+  const std::set<std::string> known = store_.all_ids();
+  for (const auto& entry : fs::directory_iterator(data_.jobs())) {
+    const std::string id = entry.path().filename().string();
+    if (known.contains(id) || id.starts_with("new-")) continue;
+    const auto mine = [&](const auto& child) { return child.study.root == entry.path(); };
+    if (std::any_of(workers_.begin(), workers_.end(), mine) || std::any_of(publishers_.begin(), publishers_.end(), mine))
+      removing_ = 1;
+    else if (store_.job(id))
+      fs::remove_all(entry.path());
+  }
+}
+
+/// At start: what a killed talusd left between making a directory and recording its job.
+void Scheduler::remove_orphans() {
+  const std::set<std::string> known = store_.all_ids();
+  for (const auto& entry : fs::directory_iterator(data_.jobs()))
+    if (!known.contains(entry.path().filename().string())) fs::remove_all(entry.path());
+  fs::remove_all(data_.scratch());
+  fs::create_directories(data_.scratch());
+}
+
+void Scheduler::drain() {
+  if (stopped_.exchange(true)) return;
+  draining_ = true;
+  wake_.notify_one();
+  if (!thread_.joinable()) return;
+  thread_.join();
+  for (Worker& worker : workers_) worker.child.signal(SIGTERM);
+  const Steady::time_point end = Steady::now() + config_.grace;
+  log_info("draining", {{"workers", workers_.size()}, {"grace_s", config_.grace.count()}});
+  while (!workers_.empty() && Steady::now() < end) {
+    try {
+      reap();
+    } catch (const std::exception& e) {
+      log_error("drain", {{"why", e.what()}});
+    }
+    std::this_thread::sleep_for(poll_interval);
+  }
+  for (Worker& worker : workers_) {
+    worker.child.signal(SIGKILL);
+    try {
+      store_.give_back(worker.claim, false);
+    } catch (const std::exception&) {  // the next talusd puts it back
+    }
+  }
+  workers_.clear();
+  publishers_.clear();
+}
+
+}  // namespace talus::service

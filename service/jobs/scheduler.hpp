@@ -1,0 +1,109 @@
+#pragma once
+// Runs what the queue holds: one thread that starts workers, watches them and writes down how they end.
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <list>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "jobs/changes.hpp"
+#include "jobs/commands.hpp"
+#include "queue/store.hpp"
+
+namespace talus::service {
+
+/// Numbers for /metrics.
+struct WorkDone {
+  std::atomic<std::int64_t> done{0}, failed{0}, crashed{0}, given_back{0}, stale{0};
+  std::atomic<std::int64_t> wall_clock_ms{0};  ///< of the done ones
+  std::atomic<int> running{0};
+};
+
+class Scheduler {
+ public:
+  Scheduler(const Config& config, Store& store, Changes& changes);
+  ~Scheduler();
+  Scheduler(const Scheduler&) = delete;
+  Scheduler& operator=(const Scheduler&) = delete;
+
+  /// Puts back what an earlier talusd held, removes what belongs to no job, and starts to work.
+  void start();
+  /// Stops claiming, asks the workers to checkpoint, puts their runs back; kills what has not ended within the grace.
+  void drain();
+  /// Something has changed: look at the queue now, and at whether the leases still hold.
+  void kick();
+  const WorkDone& work_done() const { return done_; }
+
+ private:
+  using Steady = std::chrono::steady_clock;
+
+  struct Worker {
+    Claim claim;
+    StudyDirectory study;
+    Child child;
+    Steady::time_point deadline;
+    bool resumed = false;
+    bool timed_out = false;
+    bool lost = false;  ///< its claim is not current any more
+  };
+  struct Publisher {
+    Job job;
+    StudyDirectory study;
+    Child child;
+    Steady::time_point deadline;
+    bool interim = false;
+  };
+
+  void loop();
+  void tick();
+  void beat();
+  void reap();
+  void settle(Worker& worker, End end);
+  void settle_result(Worker& worker);
+  void settle_failure(Worker& worker, const RunFailure& failure);
+  void settle_broken(Worker& worker, const RunFailure& failure, bool crashed);
+  void fill();
+  void start_worker(const Claim& claim);
+  bool adopt(const Claim& claim, const StudyDirectory& study, const Job& job);
+  void clear_work(const StudyDirectory& study, const RunKey& run);
+  void publish_complete();
+  void publish_interim();
+  void start_publisher(const Job& job, bool interim);
+  void settle_publisher(Publisher& publisher, End end);
+  void run_echo();
+  void remove_dismissed();
+  void remove_orphans();
+  bool room_on_disk();
+  void wait_for(std::chrono::milliseconds most);
+  StudyDirectory study(const std::string& id) const { return {data_.job(id)}; }
+  std::optional<Job> job_of(const Claim& claim) { return store_.job(claim.job_id); }
+
+  const Config& config_;
+  DataDirectory data_;
+  Store& store_;
+  Changes& changes_;
+  Commands commands_;
+  Milliseconds lease_;
+  WorkDone done_;
+
+  std::list<Worker> workers_;
+  std::list<Publisher> publishers_;
+  std::map<std::int64_t, int> publish_failures_;              ///< by job
+  std::map<std::int64_t, std::int64_t> interim_published_;    ///< by job: how many were done then
+  Steady::time_point next_beat_{}, next_interim_{}, retry_at_{};
+  bool look_ = true;          ///< the queue may hold something to do
+  bool echo_waiting_ = false;
+  bool told_trouble_ = false;
+  int removing_ = 1;          ///< look for directories of dismissed jobs
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool kicked_ = false;
+  std::atomic<bool> draining_{false}, stopped_{false};
+  std::thread thread_;
+};
+
+}  // namespace talus::service

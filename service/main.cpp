@@ -1,0 +1,137 @@
+// talusd: the queue, its workers and its HTTP side in one process.
+
+#include <pthread.h>
+#include <signal.h>
+#include <sys/resource.h>
+
+#include <exception>
+#include <iostream>
+#include <thread>
+
+#include "http/server.hpp"
+#include "http/service.hpp"
+#include "options.hpp"
+#include "support/log.hpp"
+
+namespace {
+
+using namespace talus::service;
+
+enum Exit : int { ok = 0, internal = 1, usage = 2, io = 5 };
+
+/// The signals that ask us to stop, kept from every thread so that main can wait for them.
+sigset_t hold_stop_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, number);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+  signal(SIGXFSZ, SIG_IGN);
+  return set;
+}
+
+/// Threads, workers and clients need descriptors.
+void raise_file_limit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, 65536);
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+/// Workers inherit this lock. When talusd was killed they die with it, but not at once; two of them in one directory
+/// would spoil it.
+Descriptor wait_for_workers(const DataDirectory& data) {
+  for (int i = 0; i < 200; ++i) {
+    if (Descriptor lock = try_lock(data.workers_lock(), true)) return lock;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  throw FileError("workers of an earlier talusd still run in " + data.root.string() + "; end them first");
+}
+
+std::string url_of(const Config& config) {
+  const bool v6 = config.address.find(':') != std::string::npos;
+  return "http://" + (v6 ? "[" + config.address + "]" : config.address) + ":" + std::to_string(config.port);
+}
+
+ServerSettings settings_of(const Config& config, const Tokens& tokens) {
+  ServerSettings settings;
+  settings.guard.body_bytes = config.body_bytes;
+  settings.guard.loopback_names_only = !tokens.wanted() && config.public_url.empty();
+  settings.timing.request = config.request_limit;
+  settings.threads = config.http_threads;
+  return settings;
+}
+
+int serve(Config config) {
+  const sigset_t stop_signals = hold_stop_signals();
+  raise_file_limit();
+  const Tokens tokens = config.tokens.empty() ? Tokens() : Tokens(config.tokens);
+  const DataDirectory data{config.data};
+  for (const auto& directory : {data.root, data.jobs(), data.scratch()}) std::filesystem::create_directories(directory);
+  const Descriptor lock = try_lock(data.lock(), false);
+  if (!lock) throw FileError("another talusd is at work in " + data.root.string());
+  const Descriptor workers_lock = wait_for_workers(data);
+
+  Store store(data.database(), system_now);
+  Changes changes;
+  Scheduler scheduler(config, store, changes);
+  Jobs jobs(config, store, scheduler, changes);
+  std::atomic<bool> stopping{false};
+  Service service{.config = config, .store = store, .jobs = jobs, .scheduler = scheduler, .changes = changes,
+                  .stopping = [&] { return stopping.load(); }};
+  Router router;
+  add_discovery_routes(router);
+  add_execution_routes(router, service);
+  add_job_routes(router, service);
+  add_realization_routes(router, service);
+  add_event_routes(router, service);
+  add_operation_routes(router, service);
+  add_umbridge_routes(router, service);
+
+  Server server(settings_of(config, tokens), [&](const Incoming& request) { return answer(request, router, service, tokens); });
+  config.port = server.bind(config.address, config.port);
+  if (config.port == 0) throw FileError("cannot listen on " + config.address + ": the port is taken, or the address is not ours");
+  scheduler.start();
+  std::thread http([&] { server.serve(); });
+  std::cout << "talusd " << TALUS_VERSION << " listens on " << url_of(config) << std::endl;
+  log_info("started", {{"url", url_of(config)}, {"data", data.root.string()}, {"workers", config.workers}, {"threads", config.threads}});
+
+  int number = 0;
+  sigwait(&stop_signals, &number);
+  log_info("stopping", {{"signal", number}});
+  stopping = true;
+  jobs.stop();
+  changes.announce();
+  scheduler.drain();
+  server.stop();
+  http.join();
+  log_info("stopped");
+  return Exit::ok;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Options options = read_options(argc, argv);
+  if (options.exit) return *options.exit;
+  try {
+    if (!options.new_token.empty()) {
+      const auto [token, line] = new_token(options.new_token[0], options.new_token[1]);
+      std::cout << "token: " << token << "\nline for the tokens file: " << line << "\n";
+      return Exit::ok;
+    }
+    return serve(options.config);
+  } catch (const FileError& e) {
+    std::cerr << "talusd: " << e.what() << "\n";
+    return Exit::io;
+  } catch (const StorageError& e) {
+    std::cerr << "talusd: " << e.what() << "\n";
+    return Exit::io;
+  } catch (const std::filesystem::filesystem_error& e) {
+    std::cerr << "talusd: " << e.what() << "\n";
+    return Exit::io;
+  } catch (const std::exception& e) {
+    std::cerr << "talusd: " << e.what() << "\n";
+    return Exit::internal;
+  }
+}

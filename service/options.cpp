@@ -1,0 +1,106 @@
+#include "options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+
+namespace talus::service {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "127.0.0.1:8080", "[::1]:0", "8080"
+std::string split_listen(const std::string& text, Config& config) {
+  const std::size_t colon = text.rfind(':');
+  std::string host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
+  const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  if (host.empty() || port.empty() || port.size() > 5 || port.find_first_not_of("0123456789") != std::string::npos ||
+      std::stoi(port) > 65535)
+    return "must be ADDRESS:PORT";
+  config.address = host;
+  config.port = std::stoi(port);
+  return {};
+}
+
+/// talus beside talusd, if it is there.
+fs::path default_program() {
+  std::error_code error;
+  const fs::path own = fs::read_symlink("/proc/self/exe", error);
+  return own.parent_path() / "talus";
+}
+
+int wrong(const std::string& what) {
+  std::cerr << "talusd: " << what << "\n";
+  return 2;
+}
+
+}  // namespace
+
+bool is_loopback(const std::string& address) {
+  return address == "localhost" || address == "::1" || address.starts_with("127.");
+}
+
+Options read_options(int argc, char** argv) {
+  Options options;
+  Config& config = options.config;
+  config.program = default_program();
+  std::string listen = "127.0.0.1:8080";
+  double min_disk_mib = 1024.0, body_mib = 4.0, memory_mib = 0.0;
+  int time_limit = 6 * 3600, grace = 30, lease = 30;
+
+  CLI::App app{"talusd: Talus as a service", "talusd"};
+  app.set_version_flag("--version", std::string("talusd ") + TALUS_VERSION);
+  app.set_config("--config", "", "file of the same options: name = value");
+  app.add_option("--data", config.data, "directory for the queue and all results; created");
+  app.add_option("--listen", listen, "ADDRESS:PORT; port 0: any free one; other than loopback needs --tokens")->capture_default_str();
+  app.add_option("--workers", config.workers, "runs at a time")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--threads", config.threads, "OpenMP threads of each run")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--tokens", config.tokens, "file of tokens; who has none is refused");
+  app.add_option("--talus", config.program, "the talus program; otherwise the one beside talusd");
+  app.add_option("--models", config.models, "directory of cases served over UM-Bridge");
+  app.add_option("--public-url", config.public_url, "what absolute links begin with, behind a proxy");
+  app.add_option("--attempts", config.attempts, "crashes of a run before it counts as failed")->check(CLI::Range(1, 100))->capture_default_str();
+  app.add_option("--time-limit", time_limit, "seconds that one run may take")->check(CLI::Range(1, 30 * 86400))->capture_default_str();
+  app.add_option("--grace", grace, "seconds for runs to checkpoint when talusd is stopped")->check(CLI::Range(0, 3600))->capture_default_str();
+  app.add_option("--lease", lease, "seconds after which a run that nobody holds is given out again")->check(CLI::Range(3, 3600))->capture_default_str();
+  app.add_option("--memory", memory_mib, "MiB of address space of a run; 0: by its size; negative: no limit")->capture_default_str();
+  app.add_option("--nice", config.niceness, "niceness of runs")->check(CLI::Range(0, 19))->capture_default_str();
+  app.add_option("--max-body", body_mib, "MiB of a request")->check(CLI::Range(0.001, 1024.0))->capture_default_str();
+  app.add_option("--max-streams", config.streams, "clients that may wait for events at a time")->check(CLI::Range(1, 4096))->capture_default_str();
+  app.add_option("--http-threads", config.http_threads, "connections served at a time")->check(CLI::Range(64, 4096))->capture_default_str();
+  app.add_option("--max-particles", config.quotas.particles, "of a case")->capture_default_str();
+  app.add_option("--max-steps", config.quotas.steps, "of a run")->capture_default_str();
+  app.add_option("--max-realizations", config.quotas.realizations, "of a job")->check(CLI::Range(1, 10'000'000))->capture_default_str();
+  app.add_option("--max-core-hours", config.quotas.core_hours, "of a job, estimated")->capture_default_str();
+  app.add_option("--max-jobs", config.quotas.open_jobs, "that wait or run, in all")->capture_default_str();
+  app.add_option("--max-jobs-each", config.quotas.open_jobs_of_one, "that wait or run, of one subject")->capture_default_str();
+  app.add_option("--min-disk", min_disk_mib, "MiB that must stay free")->check(CLI::NonNegativeNumber)->capture_default_str();
+  app.add_option("--new-token", options.new_token, "print a new token and its line for the tokens file, and end")
+      ->expected(2)
+      ->type_name("submit|read SUBJECT");
+  app.footer("Exit codes: 0 ok, 1 internal, 2 usage, 5 input/output (also: the data directory is in use)");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    options.exit = app.exit(e) == 0 ? 0 : 2;
+    return options;
+  }
+  if (!options.new_token.empty()) return options;
+  config.time_limit = std::chrono::seconds(time_limit);
+  config.grace = std::chrono::seconds(grace);
+  config.lease = std::chrono::seconds(lease);
+  config.body_bytes = static_cast<std::size_t>(body_mib * 1048576.0);
+  config.quotas.disk_bytes = static_cast<std::uint64_t>(min_disk_mib * 1048576.0);
+  config.memory_bytes = memory_mib < 0 ? 1 : static_cast<std::uint64_t>(memory_mib * 1048576.0);
+  if (config.data.empty()) options.exit = wrong("--data DIR is needed");
+  else if (const std::string why = split_listen(listen, config); !why.empty()) options.exit = wrong("--listen " + why);
+  else if (!is_loopback(config.address) && config.tokens.empty())
+    options.exit = wrong("--listen " + config.address + " can be reached by others: give --tokens FILE");
+  else if (!fs::exists(config.program)) options.exit = wrong("there is no " + config.program.string() + "; give --talus");
+  config.data = fs::absolute(config.data);
+  config.program = fs::absolute(config.program);
+  return options;
+}
+
+}  // namespace talus::service

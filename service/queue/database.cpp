@@ -1,0 +1,89 @@
+#include "queue/database.hpp"
+
+#include <sqlite3.h>
+
+#include <iterator>
+
+#include "queue/schema.hpp"
+
+namespace talus::service {
+namespace {
+
+constexpr int busy_timeout_ms = 5000;
+constexpr int reader_count = 8;
+
+/// FULL: what is committed is on the disk, so a 201 holds after a power cut.
+void prepare(SQLite::Database& db) {
+  db.exec("PRAGMA journal_mode = WAL");
+  db.exec("PRAGMA synchronous = FULL");
+  db.exec("PRAGMA foreign_keys = ON");
+}
+
+SQLite::Database open(const std::filesystem::path& path) try {
+  return {path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_timeout_ms};
+} catch (const SQLite::Exception& e) {
+  throw StorageError(StorageError::Kind::other, "cannot open " + path.string() + ": " + e.what());
+}
+
+}  // namespace
+
+Database::Database(std::filesystem::path path) : path_(std::move(path)), writer_(open(path_)) {
+  translated([&] { prepare(writer_); });
+  migrate();
+  translated([&] {
+    for (int i = 0; i < reader_count; ++i) {
+      readers_.push_back(std::make_unique<SQLite::Database>(path_.string(), SQLite::OPEN_READWRITE, busy_timeout_ms));
+      readers_.back()->exec("PRAGMA query_only = ON");
+    }
+  });
+}
+
+void Database::migrate() {
+  const int known = static_cast<int>(std::size(migrations));
+  write([&](SQLite::Database& db) {
+    const int found = db.execAndGet("PRAGMA user_version").getInt();
+    if (found > known)
+      throw StorageError(StorageError::Kind::other,
+                         path_.string() + " is of version " + std::to_string(found) + ", which is newer than " +
+                             std::to_string(known) + "; use the newer talusd");
+    for (int i = found; i < known; ++i) db.exec(migrations[i]);
+    if (found < known) db.exec("PRAGMA user_version = " + std::to_string(known));
+  });
+}
+
+Database::Reader::Reader(Database& from) : owner(from) {
+  std::unique_lock lock(owner.pool_lock_);
+  owner.returned_.wait(lock, [&] { return !owner.readers_.empty(); });
+  connection = std::move(owner.readers_.back());
+  owner.readers_.pop_back();
+}
+
+Database::Reader::~Reader() {
+  {
+    const std::lock_guard lock(owner.pool_lock_);
+    owner.readers_.push_back(std::move(connection));
+  }
+  owner.returned_.notify_one();
+}
+
+void Database::throw_storage_error(const SQLite::Exception& e) {
+  using Kind = StorageError::Kind;
+  switch (e.getErrorCode()) {
+    case SQLITE_FULL:
+      throw StorageError(Kind::full, "the disk is full: nothing can be recorded until there is room");
+    case SQLITE_READONLY:
+    case SQLITE_CANTOPEN:
+    case SQLITE_PERM:
+      throw StorageError(Kind::read_only, std::string("the queue cannot be written: ") + e.what());
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      throw StorageError(Kind::busy, "the queue is busy; try again");
+    case SQLITE_IOERR:
+      // A disk without room for the log shows itself this way too.
+      throw StorageError(Kind::full, std::string("the queue cannot be written, most likely for want of room: ") + e.what());
+    default:
+      throw StorageError(Kind::other, std::string("the queue: ") + e.what());
+  }
+}
+
+}  // namespace talus::service

@@ -1,0 +1,78 @@
+#pragma once
+// The SQLite file: one connection that writes, a few that read.
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <condition_variable>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace talus::service {
+
+/// What the database says when it can't: sorted by what a person can do about it.
+struct StorageError : std::runtime_error {
+  enum class Kind { full, read_only, busy, other };
+  StorageError(Kind what, const std::string& text) : std::runtime_error(text), kind(what) {}
+  Kind kind;
+};
+
+class Database {
+ public:
+  /// Opens or creates the file and brings its tables up to date.
+  /// @throws StorageError also when it was written by a newer version
+  explicit Database(std::filesystem::path path);
+
+  /// Runs `action(SQLite::Database&)` in one BEGIN IMMEDIATE transaction; nothing of it remains if it throws.
+  template <class Action>
+  auto write(Action action) {
+    const std::lock_guard lock(writing_);
+    return translated([&] {
+      SQLite::Transaction transaction(writer_, SQLite::TransactionBehavior::IMMEDIATE);
+      if constexpr (std::is_void_v<decltype(action(writer_))>) {
+        action(writer_);
+        transaction.commit();
+      } else {
+        auto result = action(writer_);
+        transaction.commit();
+        return result;
+      }
+    });
+  }
+
+  /// Runs `action(SQLite::Database&)` on a connection that only reads.
+  template <class Action>
+  auto read(Action action) {
+    const Reader reader(*this);
+    return translated([&] { return action(*reader.connection); });
+  }
+
+ private:
+  struct Reader {
+    explicit Reader(Database& from);
+    ~Reader();
+    Database& owner;
+    std::unique_ptr<SQLite::Database> connection;
+  };
+
+  template <class Action>
+  static auto translated(Action action) {
+    try {
+      return action();
+    } catch (const SQLite::Exception& e) {
+      throw_storage_error(e);
+    }
+  }
+  [[noreturn]] static void throw_storage_error(const SQLite::Exception& e);
+  void migrate();
+
+  std::filesystem::path path_;
+  SQLite::Database writer_;
+  std::mutex writing_;
+  std::mutex pool_lock_;
+  std::condition_variable returned_;
+  std::vector<std::unique_ptr<SQLite::Database>> readers_;
+};
+
+}  // namespace talus::service

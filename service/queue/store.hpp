@@ -1,0 +1,86 @@
+#pragma once
+// The queue. All SQL of the service is in this module.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "queue/database.hpp"
+#include "queue/records.hpp"
+
+namespace talus::service {
+
+class Store {
+ public:
+  /// @throws StorageError
+  Store(const std::filesystem::path& path, Clock clock) : db_(path), clock_(std::move(clock)) {}
+
+  // --- jobs -----------------------------------------------------------------------------------------------------------
+
+  /// Records a job and its runs; durable when this returns.
+  /// @param answer  what its owner was told under an Idempotency-Key, in the same transaction: made from the job
+  /// @return its row; nothing where the key has been used meanwhile
+  using Answer = std::function<Remembered(const Job&)>;
+  std::optional<Job> create(const NewJob& job, const Answer& answer = {});
+  std::optional<Job> job(const std::string& id);
+  std::vector<Job> jobs(const JobFilter& filter);
+  /// Jobs that are accepted or running, of one subject or of all.
+  std::int64_t open_jobs(const std::optional<std::string>& subject);
+  std::set<std::string> all_ids();
+  Census census();
+
+  /// Ends a job that has not ended yet and of which nothing is queued or leased.
+  bool finish(std::int64_t job, JobState state, const std::string& message);
+  /// Makes a job dismissed whatever it was; its runs are forgotten, so nobody's attempt is current any more.
+  void dismiss(std::int64_t job);
+  /// Puts the failed realizations (not the done ones) back into the queue. @return how many
+  std::int64_t retry_failed(std::int64_t job, const Answer& answer = {});
+  /// Adds realizations up to `planned` in all. @return false where the key has been used meanwhile
+  bool extend(std::int64_t job, std::int64_t planned, const Answer& answer = {});
+  /// Ends the claiming of a job whose statistics are good enough: its queued realizations are dropped, the leased ones
+  /// lose their lease.
+  void stop_early(std::int64_t job);
+
+  std::optional<Remembered> remembered(const std::string& subject, const std::string& key);
+
+  // --- runs, for the scheduler ----------------------------------------------------------------------------------------
+
+  /// Leases the next run: of the open job with the fewest runs under way; of equals, the one served longest ago.
+  std::optional<Claim> claim(Milliseconds lease);
+  /// Renews leases. @return the positions of claims that are not current any more
+  std::vector<std::size_t> heartbeat(std::span<const Claim> claims, Milliseconds lease);
+  /// Each: false, and nothing changes, unless the claim's attempt is the current one.
+  bool accept(const Claim& claim, const RunResult& result);
+  bool fail(const Claim& claim, const RunFailure& failure);
+  /// Puts a run back. @param crashed  it counts against the job's run
+  bool give_back(const Claim& claim, bool crashed);
+  /// Puts back what nobody has held on to. A lease that ends later than any that could have been given now is from before
+  /// the clock was set back. @return how many
+  std::int64_t requeue_expired(Milliseconds lease);
+  /// Puts back every leased run: at start, when no worker can be alive.
+  std::vector<Claim> requeue_all();
+  /// Jobs all of whose runs have ended but which have not.
+  std::vector<Job> complete_jobs();
+  /// Jobs of a process that have no runs and have not ended.
+  std::vector<Job> waiting_jobs(const std::string& process);
+  bool start(std::int64_t job);
+  bool is_open(std::int64_t job);
+
+  bool is_current(const Claim& claim);
+
+  // --- runs, for readers ----------------------------------------------------------------------------------------------
+
+  std::vector<Run> runs(std::int64_t job, const RunFilter& filter);
+  std::optional<Run> run(const RunKey& key);
+
+ private:
+
+  Database db_;
+  Clock clock_;
+};
+
+}  // namespace talus::service

@@ -1,0 +1,250 @@
+// The runs' half of the store: leases and how they end.
+
+#include "queue/rows.hpp"
+#include "queue/store.hpp"
+
+namespace talus::service {
+namespace {
+
+using SQLite::Statement;
+
+/// Whose turn it is: see Store::claim.
+constexpr const char* next_job =
+    "SELECT number, id, seed FROM jobs AS j WHERE state IN ('accepted', 'running') "
+    "AND EXISTS (SELECT 1 FROM runs WHERE job = j.number AND state = 'queued') "
+    "ORDER BY (SELECT COUNT(*) FROM runs WHERE job = j.number AND state = 'leased'), served, number LIMIT 1";
+
+/// Adds the key and the attempt to "... WHERE": the fence that a late answer cannot pass.
+constexpr const char* current = " WHERE job = ? AND floor = ? AND idx = ? AND attempt = ? AND state = 'leased'";
+
+void bind_claim(Statement& statement, int first, const Claim& claim) {
+  statement.bind(first, claim.run.job);
+  statement.bind(first + 1, claim.run.floor ? 1 : 0);
+  statement.bind(first + 2, claim.run.index);
+  statement.bind(first + 3, claim.attempt);
+}
+
+void count(SQLite::Database& db, const RunKey& run, bool done, Milliseconds now) {
+  const char* column = run.floor ? "floor_made" : done ? "done" : "failed";
+  Statement update(db, std::string("UPDATE jobs SET ") + column + " = " + column +
+                           " + 1, updated = ?, version = version + 1 WHERE number = ?");
+  update.bind(1, now);
+  update.bind(2, run.job);
+  update.exec();
+}
+
+void started(SQLite::Database& db, std::int64_t job, Milliseconds now) {
+  Statement update(db,
+                   "UPDATE jobs SET state = 'running', started = ?1, updated = ?1, version = version + 1 "
+                   "WHERE number = ?2 AND state = 'accepted'");
+  update.bind(1, now);
+  update.bind(2, job);
+  update.exec();
+}
+
+}  // namespace
+
+std::optional<Claim> Store::claim(Milliseconds lease) {
+  const bool any = db_.read([](SQLite::Database& db) { return Statement(db, next_job).executeStep(); });
+  if (!any) return std::nullopt;  // without bothering the writer
+  return db_.write([&](SQLite::Database& db) -> std::optional<Claim> {
+    const Milliseconds now = clock_();
+    Claim claim;
+    {
+      Statement query(db, next_job);
+      if (!query.executeStep()) return std::nullopt;
+      claim.run.job = query.getColumn(0).getInt64();
+      claim.job_id = query.getColumn(1).getString();
+      claim.seed = query.getColumn(2).getInt64();
+    }
+    {
+      Statement query(db,
+                      "SELECT floor, idx, attempt, crashes FROM runs WHERE job = ? AND state = 'queued' "
+                      "ORDER BY rank LIMIT 1");
+      query.bind(1, claim.run.job);
+      query.executeStep();
+      claim.run.floor = query.getColumn(0).getInt() != 0;
+      claim.run.index = query.getColumn(1).getInt64();
+      claim.attempt = query.getColumn(2).getInt64() + 1;
+      claim.crashes = query.getColumn(3).getInt64();
+    }
+    Statement take(db,
+                   "UPDATE runs SET state = 'leased', attempt = ?, lease_until = ? "
+                   "WHERE job = ? AND floor = ? AND idx = ?");
+    take.bind(1, claim.attempt);
+    take.bind(2, now + lease);
+    take.bind(3, claim.run.job);
+    take.bind(4, claim.run.floor ? 1 : 0);
+    take.bind(5, claim.run.index);
+    take.exec();
+    Statement serve(db, "UPDATE jobs SET served = (SELECT MAX(served) + 1 FROM jobs) WHERE number = ?");
+    serve.bind(1, claim.run.job);
+    serve.exec();
+    started(db, claim.run.job, now);
+    return claim;
+  });
+}
+
+std::vector<std::size_t> Store::heartbeat(std::span<const Claim> claims, Milliseconds lease) {
+  std::vector<std::size_t> lost;
+  if (claims.empty()) return lost;
+  return db_.write([&](SQLite::Database& db) {
+    lost.clear();
+    Statement renew(db, std::string("UPDATE runs SET lease_until = ?") + current);
+    for (std::size_t i = 0; i < claims.size(); ++i) {
+      renew.bind(1, clock_() + lease);
+      bind_claim(renew, 2, claims[i]);
+      if (renew.exec() != 1) lost.push_back(i);
+      renew.reset();
+    }
+    return lost;
+  });
+}
+
+bool Store::is_current(const Claim& claim) {
+  return db_.read([&](SQLite::Database& db) {
+    Statement query(db, std::string("SELECT 1 FROM runs") + current);
+    bind_claim(query, 1, claim);
+    return query.executeStep();
+  });
+}
+
+bool Store::accept(const Claim& claim, const RunResult& result) {
+  return db_.write([&](SQLite::Database& db) {
+    Statement update(db,
+                     std::string("UPDATE runs SET state = 'done', influence_zone_m = ?, front_connected_m = ?, "
+                                 "front_mass_99_m = ?, front_mass_999_m = ?, centre_of_mass_x_m = ?, "
+                                 "mean_friction_angle_deg = ?, steps = ?, wall_clock_s = ?, digest = ?") +
+                         current);
+    int i = 1;
+    for (const double measure : result.measures) update.bind(i++, measure);
+    update.bind(i++, result.mean_friction_angle_deg);
+    update.bind(i++, result.steps);
+    update.bind(i++, result.wall_clock);
+    update.bind(i++, result.digest);
+    bind_claim(update, i, claim);
+    if (update.exec() != 1) return false;
+    count(db, claim.run, true, clock_());
+    return true;
+  });
+}
+
+bool Store::fail(const Claim& claim, const RunFailure& failure) {
+  return db_.write([&](SQLite::Database& db) {
+    Statement update(db, std::string("UPDATE runs SET state = 'failed', crashes = crashes + 1, reason = ?, "
+                                     "exit_code = ?, signal = ?, log_tail = ?") +
+                             current);
+    update.bind(1, failure.reason);
+    failure.exit_code ? update.bind(2, *failure.exit_code) : update.bind(2);
+    failure.signal ? update.bind(3, *failure.signal) : update.bind(3);
+    update.bind(4, failure.log_tail);
+    bind_claim(update, 5, claim);
+    if (update.exec() != 1) return false;
+    count(db, claim.run, false, clock_());
+    return true;
+  });
+}
+
+bool Store::give_back(const Claim& claim, bool crashed) {
+  return db_.write([&](SQLite::Database& db) {
+    Statement update(db, std::string("UPDATE runs SET state = 'queued', crashes = crashes + ?") + current);
+    update.bind(1, crashed ? 1 : 0);
+    bind_claim(update, 2, claim);
+    return update.exec() == 1;
+  });
+}
+
+std::int64_t Store::requeue_expired(Milliseconds lease) {
+  return db_.write([&](SQLite::Database& db) -> std::int64_t {
+    const Milliseconds now = clock_();
+    Statement update(db,
+                     "UPDATE runs SET state = 'queued' WHERE state = 'leased' "
+                     "AND (lease_until < ? OR lease_until > ?)");
+    update.bind(1, now);
+    update.bind(2, now + 2 * lease);
+    return update.exec();
+  });
+}
+
+std::vector<Claim> Store::requeue_all() {
+  return db_.write([&](SQLite::Database& db) {
+    std::vector<Claim> held;
+    for (Statement query(db,
+                         "SELECT job, runs.floor, idx, id, jobs.seed, attempt, crashes FROM runs "
+                         "JOIN jobs ON job = number WHERE runs.state = 'leased'");
+         query.executeStep();)
+      held.push_back({{query.getColumn(0).getInt64(), query.getColumn(1).getInt() != 0, query.getColumn(2).getInt64()},
+                      query.getColumn(3).getString(), query.getColumn(4).getInt64(), query.getColumn(5).getInt64(),
+                      query.getColumn(6).getInt64()});
+    db.exec("UPDATE runs SET state = 'queued' WHERE state = 'leased'");
+    return held;
+  });
+}
+
+std::vector<Job> Store::complete_jobs() {
+  return db_.read([&](SQLite::Database& db) {
+    Statement query(db, std::string("SELECT ") + job_columns +
+                            " FROM jobs AS j WHERE state = 'running' AND planned > 0 AND NOT EXISTS "
+                            "(SELECT 1 FROM runs WHERE job = j.number AND state = 'queued') AND NOT EXISTS "
+                            "(SELECT 1 FROM runs WHERE job = j.number AND state = 'leased')");
+    return all_jobs(query);
+  });
+}
+
+std::vector<Job> Store::waiting_jobs(const std::string& process) {
+  return db_.read([&](SQLite::Database& db) {
+    Statement query(db, std::string("SELECT ") + job_columns +
+                            " FROM jobs WHERE state IN ('accepted', 'running') AND planned = 0 AND process = ?");
+    query.bind(1, process);
+    return all_jobs(query);
+  });
+}
+
+bool Store::start(std::int64_t job) {
+  return db_.write([&](SQLite::Database& db) {
+    started(db, job, clock_());
+    return db.getChanges() > 0;
+  });
+}
+
+bool Store::is_open(std::int64_t job) {
+  return db_.read([&](SQLite::Database& db) {
+    Statement query(db, "SELECT 1 FROM jobs WHERE number = ? AND state IN ('accepted', 'running')");
+    query.bind(1, job);
+    return query.executeStep();
+  });
+}
+
+std::vector<Run> Store::runs(std::int64_t job, const RunFilter& filter) {
+  const std::string measure = measure_names[static_cast<std::size_t>(filter.measure)];
+  std::string where = "job = ? AND floor = 0 AND idx > ?";
+  if (filter.state) where += " AND state = ?";
+  if (filter.least) where += " AND " + measure + " >= ?";
+  if (filter.below) where += " AND " + measure + " < ?";
+  if (filter.most) where += " AND " + measure + " <= ?";
+  return db_.read([&](SQLite::Database& db) {
+    Statement query(db, std::string("SELECT ") + run_columns + " FROM runs WHERE " + where + " ORDER BY idx LIMIT ?");
+    int i = 1;
+    query.bind(i++, job);
+    query.bind(i++, filter.after);
+    if (filter.state) query.bind(i++, word(*filter.state));
+    for (const auto& bound : {filter.least, filter.below, filter.most})
+      if (bound) query.bind(i++, *bound);
+    query.bind(i, filter.limit);
+    std::vector<Run> runs;
+    while (query.executeStep()) runs.push_back(run_of(query));
+    return runs;
+  });
+}
+
+std::optional<Run> Store::run(const RunKey& key) {
+  return db_.read([&](SQLite::Database& db) -> std::optional<Run> {
+    Statement query(db, std::string("SELECT ") + run_columns + " FROM runs WHERE job = ? AND floor = ? AND idx = ?");
+    query.bind(1, key.job);
+    query.bind(2, key.floor ? 1 : 0);
+    query.bind(3, key.index);
+    return query.executeStep() ? std::optional(run_of(query)) : std::nullopt;
+  });
+}
+
+}  // namespace talus::service
