@@ -98,6 +98,7 @@ Options read_options(int argc, char** argv) {
   else if (!is_loopback(config.address) && config.tokens.empty())
     options.exit = wrong("--listen " + config.address + " can be reached by others: give --tokens FILE");
   else if (!fs::exists(config.program)) options.exit = wrong("there is no " + config.program.string() + "; give --talus");
+  if (options.exit) return options;
   config.data = fs::absolute(config.data);
   config.program = fs::absolute(config.program);
   return options;

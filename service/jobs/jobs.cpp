@@ -109,14 +109,17 @@ void Jobs::check_queue(const std::string& subject) const {
   const std::int64_t all = store_.open_jobs({}), mine = store_.open_jobs(subject);
   if (all >= config_.quotas.open_jobs) refuse(all, config_.quotas.open_jobs, "in all");
   if (mine >= config_.quotas.open_jobs_of_one) refuse(mine, config_.quotas.open_jobs_of_one, "of yours");
+  check_disk();
+}
+
+void Jobs::check_disk() const {
   const std::uint64_t left = disk_left(config_.data);
   if (left < config_.quotas.disk_bytes)
     throw Refusal(Reason::disk_full, "only " + std::to_string(left >> 20) + " MiB of disk are left; " +
                                          std::to_string(config_.quotas.disk_bytes >> 20) + " must stay free");
 }
 
-void Jobs::check_quotas(const std::string& subject, double particles, double steps, std::int64_t realizations) const {
-  check_queue(subject);
+void Jobs::check_size(double particles, double steps, std::int64_t realizations) const {
   Checker check;
   const auto at_most = [&](const char* pointer, const char* what, double asked, double most) {
     if (asked > most) check.fault(pointer, std::string(what) + ": " + text(asked) + ", at most " + text(most));
@@ -148,7 +151,7 @@ std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& in
                  : static_cast<std::int64_t>(std::stoull(random_hex(7), nullptr, 16) & most_exact_integer);
   job.particles = demand.at("particles").at("soil").get<double>() + demand.at("particles").at("wall").get<double>();
   job.steps = demand.at("steps").get<double>();
-  check_quotas(subject, job.particles, job.steps, job.planned);
+  check_size(job.particles, job.steps, job.planned);
   const Outcome prepared = run(commands_.prepare(scratch, directory, job.planned, job.seed), seconds(60));
   fs::remove(scratch);
   if (prepared.end.signal || prepared.end.exit_code != 0) refuse_case(prepared, "/inputs/case");
@@ -200,7 +203,8 @@ bool Jobs::extend(const Job& job, std::int64_t more, const Store::Answer& answer
     throw Refusal(Reason::conflict, "this job has no realizations");
   if (job.may_stop_early) throw Refusal(Reason::conflict, "a study that stops by itself cannot be extended");
   const std::int64_t planned = job.planned + more;
-  check_quotas(job.subject, job.particles, job.steps, planned);
+  check_disk();
+  check_size(job.particles, job.steps, planned);
   const StudyDirectory directory{data_.job(job.id)};
   const Outcome prepared = run(commands_.prepare(directory.resolved_case(), directory, planned, job.seed), seconds(60));
   if (prepared.end.signal || prepared.end.exit_code != 0)

@@ -49,7 +49,8 @@ class Jobs {
   void stop() { stopping_ = true; }
 
  private:
-  void check_quotas(const std::string& subject, double particles, double steps, std::int64_t realizations) const;
+  void check_disk() const;
+  void check_size(double particles, double steps, std::int64_t realizations) const;
   void check_queue(const std::string& subject) const;
   Outcome run(const Command& command, std::chrono::milliseconds limit, bool heavy = false);
   [[noreturn]] void refuse_case(const Outcome& outcome, const std::string& pointer) const;

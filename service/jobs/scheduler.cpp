@@ -70,6 +70,7 @@ void Scheduler::loop() {
       std::this_thread::sleep_for(trouble_interval);
     }
   }
+  end_workers();
 }
 
 void Scheduler::tick() {
@@ -255,8 +256,11 @@ void Scheduler::drain() {
   if (stopped_.exchange(true)) return;
   draining_ = true;
   wake_.notify_one();
-  if (!thread_.joinable()) return;
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
+}
+
+/// In the scheduler's own thread: the workers ask the kernel to kill them when the thread that started them ends.
+void Scheduler::end_workers() {
   for (Worker& worker : workers_) worker.child.signal(SIGTERM);
   const Steady::time_point end = Steady::now() + config_.grace;
   log_info("draining", {{"workers", workers_.size()}, {"grace_s", config_.grace.count()}});
@@ -265,6 +269,7 @@ void Scheduler::drain() {
       reap();
     } catch (const std::exception& e) {
       log_error("drain", {{"why", e.what()}});
+      std::this_thread::sleep_for(trouble_interval);
     }
     std::this_thread::sleep_for(poll_interval);
   }

@@ -59,6 +59,7 @@ class Scheduler {
 
   void loop();
   void tick();
+  void end_workers();
   void beat();
   void reap();
   void settle(Worker& worker, End end);

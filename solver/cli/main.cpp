@@ -44,6 +44,8 @@ int main(int argc, char** argv) {
   talus::cli::add_stats(app, action);
   talus::cli::add_plot(app, action);
   talus::cli::add_schema(app, action);
+  talus::cli::add_profile(app, action);
+  talus::cli::add_remote(app, action);
   talus::cli::add_bench(app, action);
   try {
     app.parse(argc, argv);

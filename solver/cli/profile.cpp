@@ -1,0 +1,75 @@
+// talus profile: the slide as a finished run left it, as numbers or as a picture.
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "case/load.hpp"
+#include "cli/verbs.hpp"
+#include "figures/profile.hpp"
+#include "io/files.hpp"
+#include "io/result_json.hpp"
+#include "io/vtkhdf.hpp"
+
+namespace talus::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+struct ProfileOptions {
+  fs::path directory, out;
+};
+
+/// The soil particles of a frame as columns.
+ordered_json columns(const Frame& frame) {
+  ordered_json x = ordered_json::array(), y = x, moved = x, speed = x, phi = x;
+  for (std::size_t i = 0; i < frame.n_soil; ++i) {
+    x.push_back(frame.position[i].x);
+    y.push_back(frame.position[i].y);
+    moved.push_back(std::hypot(frame.displacement[i].x, frame.displacement[i].y));
+    speed.push_back(std::hypot(frame.velocity[i].x, frame.velocity[i].y));
+    phi.push_back(frame.phi[i] * 180.0 / std::numbers::pi);
+  }
+  return {{"time_s", frame.time}, {"particles", frame.n_soil}, {"x_m", x},           {"y_m", y},
+          {"displacement_m", moved}, {"speed_m_s", speed},      {"friction_angle_deg", phi}};
+}
+
+Exit profile(const ProfileOptions& options) {
+  const fs::path snapshots = options.directory / "snapshots.vtkhdf";
+  const std::size_t n = snapshot_times(snapshots).size();
+  if (n == 0) throw IoError(snapshots.string() + " holds no snapshot");
+  const Frame frame = read_frame(snapshots, n - 1);
+  if (options.out.extension() == ".json") {
+    write_file_atomically(options.out, columns(frame).dump() + "\n");
+  } else {
+    const LoadedCase loaded = load_case(options.directory / "case.resolved.json");
+    const Provenance from = read_result(options.directory / "result.json").second;
+    std::string source = "Talus " + from.version + "  ·  seed " + std::to_string(from.seed);
+    if (from.realization) source += "  ·  realization " + std::to_string(*from.realization);
+    figures::plot_profile(frame, loaded.value.model.terrain, loaded.value.model.dx, figures::Colour::displacement,
+                          options.out,
+                          {from.case_title, "Displacement at the end", source + "  ·  case " + from.case_hash});
+  }
+  std::cout << options.out.string() << "\n";
+  return Exit::ok;
+}
+
+std::string known_ending(const std::string& path) {
+  const fs::path ending = fs::path(path).extension();
+  return ending == ".json" || ending == ".svg" || ending == ".png" ? "" : path + " must end in .json, .svg or .png";
+}
+
+}  // namespace
+
+void add_profile(CLI::App& app, Action& action) {
+  auto options = std::make_shared<ProfileOptions>();
+  CLI::App* verb = app.add_subcommand("profile", "Write the slide as a finished run left it: .json, .svg or .png");
+  verb->add_option("directory", options->directory, "directory of a finished run")->required();
+  verb->add_option("--out", options->out, "file to write; the ending says what")->required()->check(known_ending);
+  verb->callback([options, &action] { action = [options] { return profile(*options); }; });
+}
+
+}  // namespace talus::cli

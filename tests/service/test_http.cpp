@@ -1,0 +1,132 @@
+// Problems, routes, tokens, options.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "http/problem.hpp"
+#include "http/router.hpp"
+#include "http/tokens.hpp"
+#include "options.hpp"
+#include "queue/database.hpp"
+#include "support/digest.hpp"
+#include "temporary_directory.hpp"
+
+namespace talus::service {
+namespace {
+
+TEST(Problem, EveryReasonHasItsRow) {
+  std::set<std::string> types;
+  for (int i = 0; i <= static_cast<int>(Reason::disk_full); ++i) {
+    const Answer answer = problem(Refusal(static_cast<Reason>(i), "why"), "");
+    const Json body = Json::parse(answer.body);
+    EXPECT_EQ(body["status"], answer.status);
+    EXPECT_EQ(body["detail"], "why");
+    types.insert(body["type"].get<std::string>());
+  }
+  EXPECT_EQ(types.size(), static_cast<std::size_t>(Reason::disk_full) + 1);
+}
+
+TEST(Problem, MediaTypeFollowsTheClient) {
+  const Refusal refusal(Reason::no_such_job, "x", {{"/a", "b"}});
+  EXPECT_EQ(problem(refusal, "*/*").type, "application/json");
+  const Answer answer = problem(refusal, "application/problem+json, application/json");
+  EXPECT_EQ(answer.type, "application/problem+json");
+  EXPECT_EQ(answer.status, 404);
+  const Json body = Json::parse(answer.body);
+  EXPECT_EQ(body["type"], "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/no-such-job");
+  EXPECT_EQ(body["errors"], Json::parse(R"([{"pointer": "/a", "message": "b"}])"));
+}
+
+TEST(Problem, StorageAndTheUnexpected) {
+  const auto status = [](auto thrown) { return problem(std::make_exception_ptr(thrown), "").status; };
+  EXPECT_EQ(status(StorageError(StorageError::Kind::full, "x")), 507);
+  EXPECT_EQ(status(StorageError(StorageError::Kind::read_only, "x")), 503);
+  const Answer internal = problem(std::make_exception_ptr(std::runtime_error("secret /path")), "");
+  EXPECT_EQ(internal.status, 500);
+  EXPECT_EQ(internal.body.find("secret"), std::string::npos);
+}
+
+TEST(Routes, AreFoundByMethodAndPath) {
+  Router router;
+  router.add("GET", "/", Role::read, [](Exchange&) { return Answer{.status = 1}; });
+  router.add("GET", "/jobs/{}", Role::read, [](Exchange&) { return Answer{.status = 2}; });
+  router.add("DELETE", "/jobs/{}", Role::submit, [](Exchange&) { return Answer{.status = 3}; });
+  EXPECT_TRUE(router.find("GET", "/").handler);
+  EXPECT_EQ(router.find("GET", "/jobs/a").captured, (std::vector<std::string>{"a"}));
+  EXPECT_TRUE(router.find("HEAD", "/jobs/a").handler);
+  EXPECT_TRUE(router.find("GET", "/jobs/a/").handler);
+  EXPECT_EQ(router.find("DELETE", "/jobs/a").role, Role::submit);
+  const Router::Found wrong = router.find("PUT", "/jobs/a");
+  EXPECT_FALSE(wrong.handler);
+  EXPECT_EQ(wrong.allow, "GET, HEAD, DELETE, OPTIONS");
+  EXPECT_EQ(router.find("GET", "/jobs/a/b").allow, "");
+  EXPECT_EQ(router.find("GET", "/jobs").allow, "");
+}
+
+TEST(Tokens, AreFoundByTheirHash) {
+  const test::TemporaryDirectory directory;
+  const auto [token, line] = new_token("submit", "anna");
+  EXPECT_EQ(line.find(token), std::string::npos);
+  std::ofstream(directory / "tokens") << "# people\n" << line << "\n" << new_token("read", "ben").second << " # ben\n";
+  const Tokens tokens(directory / "tokens");
+  ASSERT_TRUE(tokens.find("Bearer " + token));
+  EXPECT_EQ(tokens.find("Bearer " + token)->subject, "anna");
+  EXPECT_EQ(tokens.find("Bearer " + token)->role, Role::submit);
+  for (const std::string& bad : std::vector<std::string>{"", token, "Bearer " + token + " ", "bearer " + token, "Bearer x"})
+    EXPECT_FALSE(tokens.find(bad)) << bad;
+}
+
+TEST(Tokens, ABadFileIsRefused) {
+  const test::TemporaryDirectory directory;
+  const auto refused = [&](const std::string& text) {
+    std::ofstream(directory / "tokens") << text;
+    EXPECT_THROW(Tokens(directory / "tokens"), std::runtime_error) << text;
+  };
+  refused("");
+  refused("submit anna secret\n");
+  refused("admin anna " + std::string(64, 'a') + "\n");
+  refused("submit a/b " + std::string(64, 'a') + "\n");
+  EXPECT_THROW(Tokens(directory / "none"), std::runtime_error);
+  EXPECT_THROW(new_token("submit", "a b"), std::runtime_error);
+}
+
+TEST(Digest, KnownValues) {  // FIPS 180-2, appendix B.1
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_TRUE(equal_in_constant_time("ab", "ab"));
+  EXPECT_FALSE(equal_in_constant_time("ab", "ac"));
+  EXPECT_FALSE(equal_in_constant_time("ab", "abc"));
+  EXPECT_NE(random_hex(8), random_hex(8));
+}
+
+Options options(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "talusd");
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  return read_options(static_cast<int>(argv.size()), argv.data());
+}
+
+TEST(Options, OtherThanLoopbackNeedsTokens) {
+  EXPECT_FALSE(options({"--data", "d", "--talus", "/bin/true"}).exit);
+  EXPECT_FALSE(options({"--data", "d", "--talus", "/bin/true", "--listen", "[::1]:0"}).exit);
+  EXPECT_EQ(options({"--data", "d", "--talus", "/bin/true", "--listen", "0.0.0.0:80"}).exit, 2);
+  EXPECT_FALSE(options({"--data", "d", "--talus", "/bin/true", "--listen", "0.0.0.0:80", "--tokens", "t"}).exit);
+  EXPECT_EQ(options({"--talus", "/bin/true"}).exit, 2);
+  EXPECT_EQ(options({"--data", "d", "--talus", "/none"}).exit, 2);
+  EXPECT_EQ(options({"--data", "d", "--talus", "/bin/true", "--listen", "127.0.0.1:99999"}).exit, 2);
+  EXPECT_EQ(options({"--data", "d", "--workers", "0"}).exit, 2);
+}
+
+TEST(Options, AFileSaysTheSame) {
+  const test::TemporaryDirectory directory;
+  std::ofstream(directory / "talusd.conf") << "data = \"/d\"\nworkers = 3\nlisten = \"127.0.0.1:9\"\ntalus = \"/bin/true\"\n";
+  const Options read = options({"--config", directory / "talusd.conf", "--workers", "4"});
+  EXPECT_FALSE(read.exit);
+  EXPECT_EQ(read.config.data, "/d");
+  EXPECT_EQ(read.config.port, 9);
+  EXPECT_EQ(read.config.workers, 4);
+}
+
+}  // namespace
+}  // namespace talus::service

@@ -1,0 +1,277 @@
+// The queue: leases, attempts, fairness, and what is left of them after a crash.
+
+#include "queue/store.hpp"
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include <map>
+#include <set>
+#include <thread>
+
+#include "temporary_directory.hpp"
+
+namespace talus::service {
+namespace {
+
+constexpr Milliseconds lease = 30'000;
+
+struct StoreTest : testing::Test {
+  test::TemporaryDirectory directory;
+  Milliseconds now = 1'000'000;
+  std::unique_ptr<Store> store = open();
+
+  std::unique_ptr<Store> open() {
+    return std::make_unique<Store>(directory / "queue.sqlite", [this] { return now; });
+  }
+  Job add(const std::string& id, std::int64_t realizations, std::int64_t floor = 0, const std::string& subject = "a") {
+    return *store->create({.id = id, .process = "influence-zone", .subject = subject, .planned = realizations, .floor = floor});
+  }
+  Job job(const std::string& id) { return *store->job(id); }
+  static RunResult result(double zone) {
+    return {.measures = {zone, 1, 2, 3, 4}, .mean_friction_angle_deg = 25, .steps = 9, .wall_clock = 0.5, .digest = "d"};
+  }
+};
+
+TEST_F(StoreTest, AJobIsThereAfterReopening) {
+  add("one", 3, 2);
+  store = open();
+  const Job found = job("one");
+  EXPECT_EQ(found.state, JobState::accepted);
+  EXPECT_EQ(found.planned, 3);
+  EXPECT_EQ(found.created, 1'000'000);
+  EXPECT_FALSE(found.started);
+  EXPECT_FALSE(store->job("two"));
+}
+
+TEST_F(StoreTest, RunsAreClaimedOnceEachOriginThenFloorThenTheRest) {
+  const Job made = add("one", 3, 2);
+  std::vector<std::string> order;
+  while (const auto claim = store->claim(lease))
+    order.push_back((claim->run.floor ? "f" : "r") + std::to_string(claim->run.index));
+  EXPECT_EQ(order, (std::vector<std::string>{"r0", "f1", "f2", "r1", "r2"}));
+  EXPECT_EQ(job("one").state, JobState::running);
+  EXPECT_TRUE(store->complete_jobs().empty());
+  EXPECT_EQ(made.seed, 0);
+}
+
+TEST_F(StoreTest, ClaimsAreSharedByTwoThreads) {
+  add("one", 200);
+  std::mutex mutex;
+  std::multiset<std::int64_t> seen;
+  const auto work = [&] {
+    while (const auto claim = store->claim(lease)) {
+      store->accept(*claim, result(1));
+      const std::lock_guard lock(mutex);
+      seen.insert(claim->run.index);
+    }
+  };
+  std::thread a(work), b(work);
+  a.join(), b.join();
+  EXPECT_EQ(seen.size(), 200u);
+  EXPECT_EQ(std::set(seen.begin(), seen.end()).size(), 200u);
+  EXPECT_EQ(job("one").done, 200);
+}
+
+TEST_F(StoreTest, AResultCountsOnlyFromTheCurrentAttempt) {
+  add("one", 1);
+  const Claim first = *store->claim(lease);
+  now += lease + 1;
+  EXPECT_EQ(store->requeue_expired(lease), 1);
+  const Claim second = *store->claim(lease);
+  EXPECT_EQ(second.attempt, first.attempt + 1);
+  EXPECT_FALSE(store->is_current(first));
+  EXPECT_FALSE(store->accept(first, result(1)));
+  EXPECT_FALSE(store->fail(first, {.reason = "late"}));
+  EXPECT_FALSE(store->give_back(first, true));
+  EXPECT_EQ(job("one").done, 0);
+  EXPECT_TRUE(store->accept(second, result(2)));
+  EXPECT_FALSE(store->accept(second, result(3)));
+  EXPECT_EQ(job("one").done, 1);
+  EXPECT_EQ(store->run(second.run)->result->measures[0], 2);
+}
+
+TEST_F(StoreTest, HeartbeatsKeepALeaseAndTellOfALostOne) {
+  add("one", 2);
+  const Claim kept = *store->claim(lease), lost = *store->claim(lease);
+  now += lease - 1;
+  EXPECT_TRUE(store->heartbeat(std::vector{kept}, lease).empty());
+  now += 2;
+  EXPECT_EQ(store->requeue_expired(lease), 1);
+  EXPECT_EQ(store->heartbeat(std::vector{kept, lost}, lease), (std::vector<std::size_t>{1}));
+}
+
+TEST_F(StoreTest, AClockSetBackDoesNotHoldALeaseForEver) {
+  add("one", 1);
+  store->claim(lease);
+  now -= 3'600'000;
+  EXPECT_EQ(store->requeue_expired(lease), 1);
+}
+
+TEST_F(StoreTest, ReopeningPutsBackEveryLeaseButNoResult) {
+  add("one", 3);
+  const Claim done = *store->claim(lease);
+  store->accept(done, result(1));
+  store->claim(lease);
+  store = open();
+  const std::vector<Claim> held = store->requeue_all();
+  ASSERT_EQ(held.size(), 1u);
+  EXPECT_EQ(held[0].run.index, 1);
+  EXPECT_EQ(store->census().runs[static_cast<std::size_t>(RunState::queued)], 2);
+  EXPECT_EQ(store->census().runs[static_cast<std::size_t>(RunState::done)], 1);
+  EXPECT_EQ(store->claim(lease)->attempt, 2);
+}
+
+TEST_F(StoreTest, OneHugeJobDoesNotStarveASmallOne) {
+  add("huge", 1000);
+  std::vector<Claim> running;
+  for (int i = 0; i < 4; ++i) running.push_back(*store->claim(lease));
+  add("small", 3);
+  std::map<std::string, int> of;
+  for (int i = 0; i < 6; ++i) {  // whoever ends is replaced: the small one gets every place until it has as many
+    store->accept(running.front(), result(1));
+    running.erase(running.begin());
+    running.push_back(*store->claim(lease));
+    ++of[running.back().job_id];
+  }
+  EXPECT_EQ(of["small"], 3);
+}
+
+TEST_F(StoreTest, EqualJobsTakeTurns) {
+  add("a", 100), add("b", 100);
+  std::string order;
+  for (int i = 0; i < 6; ++i) {
+    const Claim claim = *store->claim(lease);
+    order += claim.job_id;
+    store->accept(claim, result(1));
+  }
+  EXPECT_EQ(order, "ababab");
+}
+
+TEST_F(StoreTest, CrashesAreCountedInterruptionsAreNot) {
+  add("one", 1);
+  store->give_back(*store->claim(lease), false);
+  store->give_back(*store->claim(lease), true);
+  const Claim third = *store->claim(lease);
+  EXPECT_EQ(third.attempt, 3);
+  EXPECT_EQ(third.crashes, 1);
+  EXPECT_TRUE(store->fail(third, {.reason = "killed", .signal = 9, .log_tail = "tail"}));
+  const service::Run run = *store->run(third.run);
+  EXPECT_EQ(run.failure->signal, 9);
+  EXPECT_FALSE(run.failure->exit_code);
+  EXPECT_EQ(run.failure->log_tail, "tail");
+  EXPECT_EQ(job("one").failed, 1);
+}
+
+TEST_F(StoreTest, AJobEndsOnlyWhenNothingOfItIsLeft) {
+  const Job made = add("one", 1);
+  const Claim claim = *store->claim(lease);
+  EXPECT_FALSE(store->finish(made.number, JobState::successful, ""));
+  store->accept(claim, result(1));
+  ASSERT_EQ(store->complete_jobs().size(), 1u);
+  EXPECT_TRUE(store->finish(made.number, JobState::successful, "done"));
+  EXPECT_TRUE(job("one").finished);
+  EXPECT_TRUE(store->complete_jobs().empty());
+  EXPECT_FALSE(store->finish(made.number, JobState::failed, "again"));
+}
+
+TEST_F(StoreTest, DismissingTakesTheRunsAway) {
+  const Job made = add("one", 3);
+  const Claim claim = *store->claim(lease);
+  store->dismiss(made.number);
+  EXPECT_FALSE(store->accept(claim, result(1)));
+  EXPECT_EQ(store->heartbeat(std::vector{claim}, lease).size(), 1u);
+  EXPECT_FALSE(store->claim(lease));
+  EXPECT_EQ(job("one").state, JobState::dismissed);
+  EXPECT_FALSE(store->is_open(made.number));
+}
+
+TEST_F(StoreTest, RetryTakesOnlyTheFailedOnes) {
+  const Job made = add("one", 2);
+  store->accept(*store->claim(lease), result(1));
+  store->fail(*store->claim(lease), {.reason = "diverged", .exit_code = 4});
+  store->finish(made.number, JobState::failed, "");
+  EXPECT_EQ(store->retry_failed(made.number), 1);
+  EXPECT_EQ(job("one").state, JobState::running);
+  EXPECT_EQ(job("one").failed, 0);
+  EXPECT_EQ(store->claim(lease)->run.index, 1);
+  EXPECT_FALSE(store->claim(lease));
+}
+
+TEST_F(StoreTest, ExtendingLeavesWhatIsThere) {
+  const Job made = add("one", 2, 1);
+  while (const auto claim = store->claim(lease)) store->accept(*claim, result(1));
+  store->finish(made.number, JobState::successful, "");
+  EXPECT_TRUE(store->extend(made.number, 4));
+  EXPECT_EQ(job("one").planned, 4);
+  EXPECT_EQ(job("one").done, 2);
+  EXPECT_FALSE(job("one").finished);
+  EXPECT_EQ(store->claim(lease)->run.index, 2);
+  EXPECT_EQ(store->claim(lease)->run.index, 3);
+  EXPECT_FALSE(store->claim(lease));
+}
+
+TEST_F(StoreTest, AKeyIsRememberedWithTheJobOrNeither) {
+  const auto answer = [](const Job& j) {
+    return Remembered{.subject = "a", .key = "k", .body_hash = "h", .status = 201, .location = "/" + j.id, .body = "b"};
+  };
+  const NewJob first{.id = "one", .process = "echo", .subject = "a"};
+  NewJob second = first;
+  second.id = "two";
+  EXPECT_TRUE(store->create(first, answer));
+  EXPECT_FALSE(store->create(second, answer));
+  EXPECT_FALSE(store->job("two"));
+  EXPECT_EQ(store->remembered("a", "k")->location, "/one");
+  EXPECT_FALSE(store->remembered("b", "k"));
+}
+
+TEST_F(StoreTest, JobsAreListedNewestFirstByPages) {
+  for (const char* id : {"1", "2", "3", "4"}) add(id, 1, 0, id == std::string("2") ? "b" : "a");
+  JobFilter filter{.subject = "a", .limit = 2};
+  const auto page = store->jobs(filter);
+  ASSERT_EQ(page.size(), 2u);
+  EXPECT_EQ(page[0].id + page[1].id, "43");
+  filter.before = page[1].number;
+  const auto rest = store->jobs(filter);
+  ASSERT_EQ(rest.size(), 1u);
+  EXPECT_EQ(rest[0].id, "1");
+  EXPECT_TRUE(store->jobs({.states = {JobState::failed}}).empty());
+  EXPECT_TRUE(store->jobs({.processes = {"echo"}}).empty());
+}
+
+TEST_F(StoreTest, RealizationsAreFoundByTheirMeasure) {
+  const Job made = add("one", 5);
+  for (double zone = 10; const auto claim = store->claim(lease); zone += 1) store->accept(*claim, result(zone));
+  const auto found = store->runs(made.number, {.least = 11.0, .below = 13.0});
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].key.index, 1);
+  EXPECT_EQ(store->runs(made.number, {.least = 11.0, .most = 13.0}).size(), 3u);
+  EXPECT_EQ(store->runs(made.number, {.after = 2, .limit = 1})[0].key.index, 3);
+}
+
+TEST_F(StoreTest, AFullDatabaseIsToldAndNothingIsHalfWritten) {
+  add("one", 1);
+  SQLite::Database raw((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE);
+  // As many pages as there are: the file cannot grow. The limit is of a connection, so the store gets one of its own.
+  EXPECT_THROW(
+      {
+        Database small(directory / "queue.sqlite");
+        small.write([](SQLite::Database& db) {
+          db.exec("PRAGMA max_page_count = 1");
+          db.exec("CREATE TABLE x (a TEXT)");
+          for (int i = 0; i < 1000; ++i) db.exec("INSERT INTO x VALUES (hex(randomblob(1000)))");
+        });
+      },
+      StorageError);
+  EXPECT_FALSE(raw.tableExists("x"));
+  EXPECT_TRUE(store->job("one"));
+}
+
+TEST_F(StoreTest, ANewerDatabaseIsRefused) {
+  SQLite::Database((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
+  EXPECT_THROW(open(), StorageError);
+}
+
+}  // namespace
+}  // namespace talus::service
