@@ -123,8 +123,14 @@ class Server::Implementation : public httplib::Server {
     if (bound > 0) ::listen(listening_, backlog);
     return bound > 0 ? bound : 0;
   }
+  void run() {
+    listen_after_bind();
+    ended_ = true;
+  }
+  /// The library forgets a stop() that comes before it has begun to listen.
   void end() {
     stopping_ = true;
+    while (!is_running() && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     stop();
   }
 
@@ -162,14 +168,14 @@ class Server::Implementation : public httplib::Server {
   ServerSettings settings_;
   std::function<Answer(const Incoming&)> handle_;
   socket_t listening_ = INVALID_SOCKET;
-  std::atomic<bool> stopping_{false};
+  std::atomic<bool> stopping_{false}, ended_{false};
 };
 
 Server::Server(ServerSettings settings, std::function<Answer(const Incoming&)> handle)
     : implementation_(std::make_unique<Implementation>(std::move(settings), std::move(handle))) {}
 Server::~Server() = default;
 int Server::bind(const std::string& address, int port) { return implementation_->open(address, port); }
-void Server::serve() { implementation_->listen_after_bind(); }
+void Server::serve() { implementation_->run(); }
 void Server::stop() { implementation_->end(); }
 
 }  // namespace talus::service

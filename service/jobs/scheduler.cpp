@@ -86,8 +86,7 @@ void Scheduler::tick() {
   if (Steady::now() >= next_interim_) publish_interim();
 }
 
-/// Renews the leases of what runs, ends what has lost its own, and puts back what nobody holds. In this order: after a
-/// jump of the clock every lease looks expired.
+/// Renews the leases of what runs, ends what has lost its own, and puts back what nobody holds.
 void Scheduler::beat() {
   std::vector<Claim> claims;
   std::vector<Worker*> holders;
@@ -95,11 +94,10 @@ void Scheduler::beat() {
     claims.push_back(worker.claim);
     holders.push_back(&worker);
   }
-  for (const std::size_t i : store_.heartbeat(claims, lease_)) {
+  for (const std::size_t i : store_.beat(claims, lease_).lost) {
     holders[i]->lost = true;
     holders[i]->child.signal(SIGKILL);
   }
-  if (store_.requeue_expired(lease_) > 0) look_ = true;
   look_ = true;
   next_beat_ = Steady::now() + config_.lease / 6;
 }

@@ -51,16 +51,18 @@ class Store {
 
   /// Leases the next run: of the open job with the fewest runs under way; of equals, the one served longest ago.
   std::optional<Claim> claim(Milliseconds lease);
-  /// Renews leases. @return the positions of claims that are not current any more
-  std::vector<std::size_t> heartbeat(std::span<const Claim> claims, Milliseconds lease);
+  struct Beat {
+    std::vector<std::size_t> lost;  ///< positions of claims that are not current any more
+    std::int64_t requeued = 0;
+  };
+  /// Renews the leases of `held` and puts back what nobody has held on to, at one moment: after a jump of the clock every
+  /// other lease looks expired, or, set back, as if it had been given in the future.
+  Beat beat(std::span<const Claim> held, Milliseconds lease);
   /// Each: false, and nothing changes, unless the claim's attempt is the current one.
   bool accept(const Claim& claim, const RunResult& result);
   bool fail(const Claim& claim, const RunFailure& failure);
   /// Puts a run back. @param crashed  it counts against the job's run
   bool give_back(const Claim& claim, bool crashed);
-  /// Puts back what nobody has held on to. A lease that ends later than any that could have been given now is from before
-  /// the clock was set back. @return how many
-  std::int64_t requeue_expired(Milliseconds lease);
   /// Puts back every leased run: at start, when no worker can be alive.
   std::vector<Claim> requeue_all();
   /// Jobs all of whose runs have ended but which have not.

@@ -85,19 +85,24 @@ std::optional<Claim> Store::claim(Milliseconds lease) {
   });
 }
 
-std::vector<std::size_t> Store::heartbeat(std::span<const Claim> claims, Milliseconds lease) {
-  std::vector<std::size_t> lost;
-  if (claims.empty()) return lost;
+Store::Beat Store::beat(std::span<const Claim> held, Milliseconds lease) {
   return db_.write([&](SQLite::Database& db) {
-    lost.clear();
+    Beat beat;
+    const Milliseconds now = clock_();
     Statement renew(db, std::string("UPDATE runs SET lease_until = ?") + current);
-    for (std::size_t i = 0; i < claims.size(); ++i) {
-      renew.bind(1, clock_() + lease);
-      bind_claim(renew, 2, claims[i]);
-      if (renew.exec() != 1) lost.push_back(i);
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      renew.bind(1, now + lease);
+      bind_claim(renew, 2, held[i]);
+      if (renew.exec() != 1) beat.lost.push_back(i);
       renew.reset();
     }
-    return lost;
+    Statement expire(db,
+                     "UPDATE runs SET state = 'queued' WHERE state = 'leased' "
+                     "AND (lease_until < ? OR lease_until > ?)");
+    expire.bind(1, now);
+    expire.bind(2, now + 2 * lease);
+    beat.requeued = expire.exec();
+    return beat;
   });
 }
 
@@ -151,18 +156,6 @@ bool Store::give_back(const Claim& claim, bool crashed) {
     update.bind(1, crashed ? 1 : 0);
     bind_claim(update, 2, claim);
     return update.exec() == 1;
-  });
-}
-
-std::int64_t Store::requeue_expired(Milliseconds lease) {
-  return db_.write([&](SQLite::Database& db) -> std::int64_t {
-    const Milliseconds now = clock_();
-    Statement update(db,
-                     "UPDATE runs SET state = 'queued' WHERE state = 'leased' "
-                     "AND (lease_until < ? OR lease_until > ?)");
-    update.bind(1, now);
-    update.bind(2, now + 2 * lease);
-    return update.exec();
   });
 }
 

@@ -455,6 +455,11 @@ class Crash(ServiceTest):
         second.close()
         self.assertEqual(self.daemon.get("/healthz").status, 200)
 
+    def test_stopped_at_once(self):
+        for _ in range(5):
+            self.start()
+            self.assertEqual(self.daemon.stop(seconds=10), 0)
+
     def test_sigterm_drains_and_the_next_one_goes_on(self):
         plain = self.undisturbed(spacing=0.5, end=1.0)
         self.start("--grace", 20)
@@ -532,6 +537,7 @@ class ManyKills(Crash):
     test_a_second_talusd_is_refused = None
     test_sigterm_drains_and_the_next_one_goes_on = None
     test_what_was_checkpointed_is_resumed = None
+    test_stopped_at_once = None
 
 
 if __name__ == "__main__":

@@ -78,7 +78,7 @@ TEST_F(StoreTest, AResultCountsOnlyFromTheCurrentAttempt) {
   add("one", 1);
   const Claim first = *store->claim(lease);
   now += lease + 1;
-  EXPECT_EQ(store->requeue_expired(lease), 1);
+  EXPECT_EQ(store->beat({}, lease).requeued, 1);
   const Claim second = *store->claim(lease);
   EXPECT_EQ(second.attempt, first.attempt + 1);
   EXPECT_FALSE(store->is_current(first));
@@ -96,17 +96,28 @@ TEST_F(StoreTest, HeartbeatsKeepALeaseAndTellOfALostOne) {
   add("one", 2);
   const Claim kept = *store->claim(lease), lost = *store->claim(lease);
   now += lease - 1;
-  EXPECT_TRUE(store->heartbeat(std::vector{kept}, lease).empty());
+  EXPECT_TRUE(store->beat(std::vector{kept}, lease).lost.empty());
   now += 2;
-  EXPECT_EQ(store->requeue_expired(lease), 1);
-  EXPECT_EQ(store->heartbeat(std::vector{kept, lost}, lease), (std::vector<std::size_t>{1}));
+  EXPECT_EQ(store->beat({}, lease).requeued, 1);
+  EXPECT_EQ(store->beat(std::vector{kept, lost}, lease).lost, (std::vector<std::size_t>{1}));
 }
 
 TEST_F(StoreTest, AClockSetBackDoesNotHoldALeaseForEver) {
   add("one", 1);
   store->claim(lease);
   now -= 3'600'000;
-  EXPECT_EQ(store->requeue_expired(lease), 1);
+  EXPECT_EQ(store->beat({}, lease).requeued, 1);
+}
+
+TEST_F(StoreTest, WhatIsHeldSurvivesAnyJumpOfTheClock) {
+  add("one", 1);
+  const Claim held = *store->claim(lease);
+  for (const Milliseconds jump : {3'600'000, -7'200'000, 86'400'000}) {
+    now += jump;
+    const Store::Beat beat = store->beat(std::vector{held}, lease);
+    EXPECT_TRUE(beat.lost.empty());
+    EXPECT_EQ(beat.requeued, 0);
+  }
 }
 
 TEST_F(StoreTest, ReopeningPutsBackEveryLeaseButNoResult) {
@@ -181,7 +192,7 @@ TEST_F(StoreTest, DismissingTakesTheRunsAway) {
   const Claim claim = *store->claim(lease);
   store->dismiss(made.number);
   EXPECT_FALSE(store->accept(claim, result(1)));
-  EXPECT_EQ(store->heartbeat(std::vector{claim}, lease).size(), 1u);
+  EXPECT_EQ(store->beat(std::vector{claim}, lease).lost.size(), 1u);
   EXPECT_FALSE(store->claim(lease));
   EXPECT_EQ(job("one").state, JobState::dismissed);
   EXPECT_FALSE(store->is_open(made.number));
