@@ -23,6 +23,16 @@ std::string token(const ServerOptions& options) {
   return text;
 }
 
+std::string not_a_url(const std::string& text) {
+  return "--server " + text + " is not a URL such as http://127.0.0.1:8080";
+}
+
+/// The library throws at schemes that it does not know.
+std::string checked(const std::string& url) {
+  if (!url.starts_with("http://") && !url.starts_with("https://")) throw ConfigError("", not_a_url(url));
+  return url.back() == '/' ? url.substr(0, url.size() - 1) : url;
+}
+
 /// Sent again after a broken connection, a request with the same key makes no second job.
 std::string new_key() {
   std::random_device entropy;
@@ -35,8 +45,8 @@ std::string new_key() {
 
 class TalusServer::Connection {
  public:
-  explicit Connection(const ServerOptions& options) : url(options.url), client(options.url) {
-    if (!client.is_valid()) throw ConfigError("", "--server " + url + " is not a URL such as http://127.0.0.1:8080");
+  explicit Connection(const ServerOptions& options) : url(checked(options.url)), client(url) {
+    if (!client.is_valid()) throw ConfigError("", not_a_url(url));
     client.set_connection_timeout(connect_seconds);
     client.set_read_timeout(read_seconds);
     if (const std::string secret = token(options); !secret.empty()) headers.emplace("Authorization", "Bearer " + secret);
