@@ -18,9 +18,12 @@ cmake --preset dev >/dev/null
 cmake --build --preset dev
 cmake --preset tsan >/dev/null
 cmake --build --preset tsan --target test_simulation test_sph
+cmake --preset fuzz >/dev/null
+cmake --build --preset fuzz --target fuzz_request fuzz_case
 
 status=0
 ctest --preset tsan -R 'Determinism|RightHandSide' || status=1
+ctest --preset fuzz || status=1
 ctest --preset dev -j "$jobs" -LE 'slow|long' || status=1
 ctest --preset release -j "$jobs" || status=1
 exit $status

@@ -1,5 +1,8 @@
 #include "http/problem.hpp"
 
+#include <cerrno>
+#include <filesystem>
+
 #include "queue/database.hpp"
 #include "support/files.hpp"
 #include "support/log.hpp"
@@ -71,6 +74,14 @@ Refusal refusal_of(const StorageError& e) {
   return refusal;
 }
 
+Answer file_problem(int error, const char* what, const std::string& accept) {
+  log_error("files", {{"why", what}});
+  const bool full = error == ENOSPC || error == EDQUOT;
+  return problem(Refusal(full ? Reason::disk_full : Reason::unavailable,
+                         full ? "there is no room on the disk" : "a file of the service cannot be read or written"),
+                 accept);
+}
+
 }  // namespace
 
 Answer problem(const Refusal& refusal, const std::string& accept) {
@@ -87,11 +98,9 @@ Answer problem(std::exception_ptr thrown, const std::string& accept) {
     log_error("storage", {{"why", e.what()}});
     return problem(refusal_of(e), accept);
   } catch (const FileError& e) {
-    log_error("files", {{"why", e.what()}});
-    const bool full = e.error == ENOSPC || e.error == EDQUOT;
-    return problem(Refusal(full ? Reason::disk_full : Reason::unavailable,
-                           full ? "there is no room on the disk" : "a file of the service cannot be read or written"),
-                   accept);
+    return file_problem(e.error, e.what(), accept);
+  } catch (const std::filesystem::filesystem_error& e) {
+    return file_problem(e.code().value(), e.what(), accept);
   } catch (const std::exception& e) {
     log_error("internal", {{"why", e.what()}});
     return problem(Refusal(Reason::internal, "something went wrong here; it has been logged"), accept);

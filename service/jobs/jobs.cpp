@@ -15,7 +15,7 @@ using std::chrono::seconds;
 
 constexpr double evaluations_per_second = 15e6;  ///< of a core, see README
 
-constexpr std::size_t max_summary_bytes = std::size_t{256} << 20;
+constexpr std::uint64_t crowded_bytes = std::uint64_t{16} << 20;  ///< with less, a failed write is put down to the disk
 constexpr std::int64_t most_exact_integer = (std::int64_t{1} << 53) - 1;
 
 /// A directory that is gone unless it is kept.
@@ -72,6 +72,14 @@ Outcome Jobs::run(const Command& command, std::chrono::milliseconds limit, bool 
   Outcome outcome = run_to_end(command, data_.scratch(), limit, [this] { return stopping_.load(); });
   if (stopping_) throw Refusal(Reason::unavailable, "talusd is stopping");
   if (outcome.timed_out) throw Refusal(Reason::timeout, "this takes longer than " + std::to_string(limit.count() / 1000) + " s");
+  // Its own word for "cannot read or write", or an answer cut short.
+  constexpr int io_exit = 5;
+  const bool cut_short = outcome.out.empty() ? false : outcome.out.back() != '\n';
+  if (!outcome.end.signal && (outcome.end.exit_code == io_exit || cut_short)) {
+    log_error("talus_cannot_write", {{"said", outcome.err}});
+    throw Refusal(disk_left(config_.data) < crowded_bytes ? Reason::disk_full : Reason::unavailable,
+                  "a file of the service cannot be read or written");
+  }
   return outcome;
 }
 
@@ -96,7 +104,9 @@ Json Jobs::validate(const Json& document, const std::string& pointer) {
   write_file(scratch.path() / "case.json", dump(document));
   const Outcome outcome = run(commands_.validate(scratch.path() / "case.json"), seconds(60));
   if (outcome.end.signal || outcome.end.exit_code != 0) refuse_case(outcome, pointer);
-  return Json::parse(outcome.out);
+  Json demand = Json::parse(outcome.out, nullptr, false);
+  if (demand.is_discarded()) throw Refusal(Reason::unavailable, "the case could not be checked; try again");
+  return demand;
 }
 
 void Jobs::check_queue(const std::string& subject) const {

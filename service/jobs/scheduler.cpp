@@ -16,6 +16,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds poll_interval{10};
 constexpr milliseconds idle_interval{500};
 constexpr milliseconds trouble_interval{1000};
+constexpr std::uint64_t crowded_bytes = std::uint64_t{8} << 20;  ///< a run that cannot write then is not to blame
 
 }  // namespace
 
@@ -132,12 +133,14 @@ void Scheduler::reap() {
   }
 }
 
-bool Scheduler::room_on_disk() { return disk_left(config_.data) >= config_.quotas.disk_bytes / 2; }
+bool Scheduler::room_on_disk() {
+  return disk_left(config_.data) >= std::max(config_.quotas.disk_bytes / 2, crowded_bytes);
+}
 
 /// Starts workers while there are free places, room and work.
 void Scheduler::fill() {
   while (static_cast<int>(workers_.size()) < config_.workers) {
-    if (!room_on_disk()) throw std::runtime_error("less disk is left than half of --min-disk: no run is started");
+    if (!room_on_disk()) throw std::runtime_error("less disk is left than half of --min-disk, or 8 MiB: no run is started");
     const std::optional<Claim> claim = store_.claim(lease_);
     if (!claim) return;
     try {

@@ -126,7 +126,8 @@ void Scheduler::settle_publisher(Publisher& publisher, End end) {
   if (end.signal || end.exit_code != ok) {
     const std::string said = tail(data_.scratch() / ("stats-" + job.id + ".log"), tail_bytes);
     log_error("no_statistics", {{"job", job.id}, {"why", last_line(said)}});
-    if (publisher.interim || ++publish_failures_[job.number] < publish_attempts) return;
+    const bool no_room = end.exit_code == io && !end.signal && !room_on_disk();  // looked at again with the next beat
+    if (publisher.interim || no_room || ++publish_failures_[job.number] < publish_attempts) return;
     store_.finish(job.number, JobState::failed, "the statistics cannot be made: " + last_line(said));
     return;
   }
