@@ -117,7 +117,7 @@ Head judge(std::string_view head, const GuardLimits& limits) {
     return refused(400, "Content-Length and Transfer-Encoding exclude each other");
   if (count("transfer-encoding") > 0) return refused(411, "chunked bodies are not taken; send a Content-Length");
   if (count("content-length") > 1) return refused(400, "Content-Length stands more than once");
-  if (count("host") > 1 || (count("host") == 0 && good.keep_alive)) return refused(400, "exactly one Host is needed");
+  if (count("host") == 0 && good.keep_alive) return refused(400, "a Host is needed");
   std::string_view host;
   for (const Line& line : lines) {
     if (line.name == "content-length") {

@@ -212,7 +212,8 @@ bool Jobs::extend(const Job& job, std::int64_t more, const Store::Answer& answer
   if (job.process != "influence-zone" || job.state == JobState::dismissed)
     throw Refusal(Reason::conflict, "this job has no realizations");
   if (job.may_stop_early) throw Refusal(Reason::conflict, "a study that stops by itself cannot be extended");
-  const std::int64_t planned = job.planned + more;
+  const std::lock_guard one_at_a_time(extending_);  // two at once would both add to the same number
+  const std::int64_t planned = store_.job(job.id)->planned + more;
   check_disk();
   check_size(job.particles, job.steps, planned);
   const StudyDirectory directory{data_.job(job.id)};

@@ -64,6 +64,7 @@ class Jobs {
   std::counting_semaphore<64> quick_{4};  ///< short commands at a time
   std::counting_semaphore<1024> heavy_;   ///< runs outside the queue at a time
   std::atomic<bool> stopping_{false};
+  std::mutex extending_;
   std::mutex cache_lock_;
   std::list<std::pair<std::string, Json>> cache_;  ///< distributions asked for lately, newest first
 };

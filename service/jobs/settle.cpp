@@ -131,8 +131,14 @@ void Scheduler::settle_publisher(Publisher& publisher, End end) {
     store_.finish(job.number, JobState::failed, "the statistics cannot be made: " + last_line(said));
     return;
   }
-  const Json summary = Json::parse(read_file(publisher.study.summary(), max_summary_bytes).value_or("null"));
-  const Json& realizations = summary.at("realizations");
+  Json realizations;
+  try {
+    realizations = Json::parse(read_file(publisher.study.summary(), max_summary_bytes).value_or("null")).at("realizations");
+  } catch (const nlohmann::json::exception& e) {
+    log_error("no_statistics", {{"job", job.id}, {"why", e.what()}});
+    store_.finish(job.number, JobState::failed, "the statistics cannot be read");
+    return;
+  }
   if (publisher.interim) {
     if (realizations.at("stopped_early") == true) {
       store_.stop_early(job.number);

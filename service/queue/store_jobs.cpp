@@ -22,8 +22,13 @@ void insert_runs(SQLite::Database& db, std::int64_t job, bool floor, std::int64_
   }
 }
 
-/// @return false where the key is there already
+constexpr Milliseconds key_lifetime = Milliseconds{7} * 24 * 3600 * 1000;
+
+/// Forgets old keys, and keeps this one. @return false where it is there already
 bool remember(SQLite::Database& db, const Remembered& answer, Milliseconds now) {
+  Statement forget(db, "DELETE FROM remembered WHERE created < ?");
+  forget.bind(1, now - key_lifetime);
+  forget.exec();
   Statement insert(db,
                    "INSERT INTO remembered (subject, key, body_hash, status, location, body, created) "
                    "VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");

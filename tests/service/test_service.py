@@ -295,6 +295,15 @@ class Ours(ServiceTest):
             self.assertEqual(self.daemon.post(f"/jobs/{job}/extend", {"realizations": 1}, headers={"Idempotency-Key": "x"}).status, 200)
         self.assertEqual(self.daemon.wait_for(job)["realizations"]["planned"], 3)
 
+    def test_extending_twice_at_the_same_moment(self):
+        job = self.daemon.submit(study(1, noise_floor_replicates=0))
+        threads = [threading.Thread(target=self.daemon.post, args=(f"/jobs/{job}/extend", {"realizations": 2})) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(self.daemon.wait_for(job)["realizations"]["planned"], 9)
+
     def test_the_same_key_at_the_same_moment(self):
         replies = []
         threads = [threading.Thread(target=lambda: replies.append(self.daemon.post(

@@ -237,6 +237,17 @@ TEST_F(StoreTest, AKeyIsRememberedWithTheJobOrNeither) {
   EXPECT_FALSE(store->remembered("b", "k"));
 }
 
+TEST_F(StoreTest, AKeyIsForgottenAfterAWeek) {
+  const auto with_key = [](const char* key) {
+    return [key](const Job&) { return Remembered{.subject = "a", .key = key, .body_hash = "h"}; };
+  };
+  store->create({.id = "one", .process = "echo", .subject = "a"}, with_key("old"));
+  now += Milliseconds{8} * 24 * 3600 * 1000;
+  store->create({.id = "two", .process = "echo", .subject = "a"}, with_key("new"));
+  EXPECT_FALSE(store->remembered("a", "old"));
+  EXPECT_TRUE(store->remembered("a", "new"));
+}
+
 TEST_F(StoreTest, JobsAreListedNewestFirstByPages) {
   for (const char* id : {"1", "2", "3", "4"}) add(id, 1, 0, id == std::string("2") ? "b" : "a");
   JobFilter filter{.subject = "a", .limit = 2};
