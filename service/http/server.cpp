@@ -12,31 +12,31 @@ namespace {
 
 constexpr int backlog = 1024;  ///< the library's own is 5
 
-/// One judged request as the library's stream: reads come from memory, writes go to the client.
+/// One judged request as the library's stream: reads come from memory, writes go to the client. Without `override`: which
+/// of these there are depends on the library's version.
 class RequestStream : public httplib::Stream {
  public:
   RequestStream(Connection& connection, const WholeRequest& request)
       : connection_(connection), input_(request.head.rewritten + request.body) {}
 
-  bool is_readable() const override { return true; }
-  bool is_writable() const override { return true; }
-  // Newer versions of the library ask these as well.
+  bool is_readable() const { return true; }
+  bool is_writable() const { return true; }
   bool wait_readable() const { return true; }
   bool wait_writable() const { return true; }
   time_t duration() const { return 0; }
 
-  ssize_t read(char* data, size_t size) override {
+  ssize_t read(char* data, size_t size) {
     const std::size_t n = std::min(size, input_.size() - at_);
     input_.copy(data, n, at_);
     at_ += n;
     return static_cast<ssize_t>(n);
   }
-  ssize_t write(const char* data, size_t size) override {
+  ssize_t write(const char* data, size_t size) {
     return connection_.write(data, size) ? static_cast<ssize_t>(size) : -1;
   }
-  void get_remote_ip_and_port(std::string& ip, int& port) const override { ip.clear(), port = 0; }
-  void get_local_ip_and_port(std::string& ip, int& port) const override { ip.clear(), port = 0; }
-  socket_t socket() const override { return connection_.socket(); }
+  void get_remote_ip_and_port(std::string& ip, int& port) const { ip.clear(), port = 0; }
+  void get_local_ip_and_port(std::string& ip, int& port) const { ip.clear(), port = 0; }
+  socket_t socket() const { return connection_.socket(); }
 
  private:
   Connection& connection_;
