@@ -1,6 +1,7 @@
 #include "jobs/inputs.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "queue/records.hpp"
 
@@ -28,9 +29,8 @@ std::optional<std::int64_t> integer(const Json& inputs, const char* key, std::in
   if (!inputs.contains(key)) return std::nullopt;
   const std::string pointer = std::string("/inputs/") + key;
   const Json value = unqualified(inputs.at(key), pointer, check);
-  const bool whole = value.is_number_integer() ||
-                     (value.is_number_float() && value.get<double>() == static_cast<double>(value.get<std::int64_t>()));
-  if (!whole || value.get<double>() < static_cast<double>(least) || value.get<double>() > static_cast<double>(most)) {
+  const double number = value.is_number() ? value.get<double>() : NAN;  // compared before it is cast: 1e300 is no int64
+  if (!(number >= static_cast<double>(least) && number <= static_cast<double>(most) && number == std::floor(number))) {
     check.fault(pointer, "must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
     return std::nullopt;
   }
