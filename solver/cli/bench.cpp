@@ -25,6 +25,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct BenchOptions {
+  std::vector<std::string> overrides;  ///< keys of the case
   std::string case_file;
   std::vector<double> sizes = {5e3, 17e3, 100e3, 1e6};
   std::vector<int> threads;
@@ -70,8 +71,9 @@ Model model_of(const BenchOptions& o, const Json& document, const Setting& s) {
   const auto at_spacing = [&](double dx) {
     char spacing[64];
     std::snprintf(spacing, sizeof spacing, "particle_spacing_m=%.9g", dx);
-    const std::vector<std::string> overrides = {spacing, "numerics.integrator=" + s.integrator, "rheology.yield=" + s.yield,
-                                                "numerics.precision=" + s.precision, "max_particles=8000000"};
+    std::vector<std::string> overrides = o.overrides;
+    overrides.insert(overrides.end(), {spacing, "numerics.integrator=" + s.integrator, "rheology.yield=" + s.yield,
+                                                "numerics.precision=" + s.precision, "max_particles=8000000"});
     return load_case(document, directory, overrides).value.model;
   };
   double dx = document.at("particle_spacing_m").get<double>();
@@ -254,6 +256,7 @@ void add_bench(CLI::App& app, Action& action) {
   const auto o = std::make_shared<BenchOptions>();
   CLI::App* verb = app.add_subcommand("bench", "measure the speed of the solver on this machine; the first of each list is the base, one at a time is varied");
   verb->add_option("case", o->case_file, "case file; otherwise the illustrative slope");
+  verb->add_option("--set", o->overrides, "override a key of the case: path.to.key=value")->allow_extra_args(false);
   verb->add_option("--sizes", o->sizes, "numbers of particles, walls included")->delimiter(',')->check(CLI::Range(100.0, 8e6));
   verb->add_option("--threads", o->threads, "numbers of OpenMP threads; otherwise 1 and all")->delimiter(',')->check(CLI::Range(1, 4096));
   verb->add_option("--integrators", o->integrators, "rk2, leapfrog")->delimiter(',')->check(CLI::IsMember({"rk2", "leapfrog"}));

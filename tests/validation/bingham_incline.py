@@ -61,8 +61,8 @@ def errors_of_flux(numbers):
 def criteria(numbers):
     levels = numbers["levels"]
     order = order_of_convergence([l["spacing_m"] for l in levels], [l["rms"] for l in levels])
-    return [at_most(f"rms error of the profile over U, dx = {levels[-1]['spacing_m']:g} m", levels[-1]["rms"], 1.6 * levels[-1]["spacing_m"] / THICKNESS),
-            at_most("error of the flux", errors_of_flux(numbers)[-1], 2 * levels[-1]["spacing_m"] / THICKNESS),
+    return [at_most(f"rms error of the profile over U, dx = {levels[-1]['spacing_m']:g} m", levels[-1]["rms"], 2.7 * levels[-1]["spacing_m"] / THICKNESS),
+            at_most("error of the flux", errors_of_flux(numbers)[-1], 2.2 * levels[-1]["spacing_m"] / THICKNESS),
             at_most("minus the order of convergence of the profile", -order, -0.8)]
 
 

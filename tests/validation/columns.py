@@ -30,9 +30,9 @@ def case(aspect, spacing):
 
 
 def measure(work, coarse):
-    spacing = HALF_WIDTH / (10 if coarse else 20)
+    spacing = HALF_WIDTH / 20
     rows = []
-    for aspect in (0.5, 1, 1.5, 3, 4.5, 6) if coarse else (0.5, 0.75, 1, 1.5, 2, 2.5, 3, 4, 5, 6):
+    for aspect in (0.5, 1, 2, 3, 6) if coarse else (0.5, 0.75, 1, 1.5, 2, 2.5, 3, 4, 5, 6):
         directory = work / f"column-{aspect:g}-{spacing:g}"
         talus_runs.run(case(aspect, spacing), directory)
         position = Snapshots(directory).position(-1)

@@ -10,6 +10,7 @@ from experiment import at_most, read_table, table
 
 TITLE = "Water dam break"
 SOURCE = "Martin & Moyce, Phil. Trans. R. Soc. A 244 (1952) 312-324, n^2 = 2; T = t sqrt(2 g/a), Z = front/a"
+NOT_MET = ["rms error of the front, T <= 3", "rms error, finest over coarsest"]
 REMARKS = ("The computed front leads the measured one from the start, and the more so the finer the spacing: in the model the gate is gone at once and the water has next to no "
            "friction on the floor. A gate takes time, and in the experiment the origin of time was not observed but set. One delay of the release, the same for all points, takes "
            "most of the difference away; without it the wanted 8 % is not met, and the error does not fall with the spacing but tends to that of frictionless water.")
@@ -45,10 +46,10 @@ def after_delay(T, Z):
 
 def criteria(numbers):
     levels = numbers["levels"]
-    finest = f"T <= 3, a/{levels[-1]['spacings_in_a']}"
-    return [at_most(f"rms error of the front, {finest}", levels[-1]["rms"], 0.08),
+    finest = f"a/{levels[-1]['spacings_in_a']}"
+    return [at_most(f"rms error of the front, T <= 3, {finest}", levels[-1]["rms"], 0.08),
             at_most("rms error, finest over coarsest", levels[-1]["rms"] / levels[0]["rms"], 1.0),
-            at_most(f"rms error of the front with the release delayed, {finest}", levels[-1]["rms_after_delay"], 0.08)]
+            at_most(f"rms error with the release delayed, T <= 3, {finest}", levels[-1]["rms_after_delay"], 0.08)]
 
 
 def section(numbers, directory):

@@ -20,7 +20,7 @@ VARIANTS = {
 
 def measure(work, coarse):
     levels = []
-    for spacing, variants, replicates in [(0.4, VARIANTS, 8)] + ([] if coarse else [(0.2, VARIANTS, 8), (0.1, ("default", "cubic spline, h = 1.2 dx"), 8)]):
+    for spacing, variants, replicates in [(0.4, VARIANTS, 8)] + ([] if coarse else [(0.2, VARIANTS, 8), (0.1, ("default",), 8)]):
         for name in variants:
             directory = work / "noise" / f"{name.replace(' ', '-').replace(',', '').replace('=', '')}-{spacing:g}"
             study = talus_runs.study(talus_runs.CASES / "illustrative.json", directory, 2,
@@ -42,4 +42,6 @@ def section(numbers, directory):
     return table(["dx [m]", "numerics", *(f"{name} [mm]" for name in MEASURES.values()), "95 % interval of the first [mm]", "first / dx"], rows) + """
 The defaults are chosen by this table: walls that always act, the elastic law, delta-SPH diffusion, and Wendland's kernel with a wide support. A slope of
 cohesionless soil is loosest where it is thinnest and at its surface; there a particle's neighbours change often, and a wide smooth kernel makes less of each change.
+At 0.1 m the cubic spline with h = 1.2 dx left the farthest particle a floor of 31 mm (six replicates, everything else as now); more viscosity, more density diffusion,
+tension or another shear modulus did not change that (11 to 41 mm, four to six replicates each, before the walls carried the shear of their depth).
 """

@@ -182,6 +182,9 @@ class Basics(Directory):
         self.assertEqual({run["integrator"] for run in bench["runs"]}, {"rk2", "leapfrog"})
         table = talus("bench", "--seconds", 0.05, "--sizes", "1000", "--threads", "1")
         self.assertEqual(len(table.stdout.splitlines()), 3 + 4)
+        wide, narrow = (json.loads(talus("bench", "--json", "--seconds", 0.05, "--sizes", "1000", "--threads", "1", "--set", f"numerics.smoothing_ratio={ratio}").stdout)["runs"][0]
+                        for ratio in (1.5, 1.2))
+        self.assertGreater(wide["neighbours"], narrow["neighbours"])
         self.assertEqual(talus("bench", "--sizes", "1").returncode, 2)
         self.assertEqual(talus("bench", self.case(title=3)).returncode, 3)
 
