@@ -149,7 +149,7 @@ def section(numbers, directory):
            f"fastest particle {1000 * numbers['tank']['max_speed_m_s']:.1f} mm/s.\n\n"
     text += f"Pile of 15 degrees, phi = 25 deg, {HEIGHT:g} m high, dx = 0.1 m, farthest way of a particle:\n\n"
     text += table(["law", "in 10 s [m]", "of that after 1 s [m]", "in 10 s / dx"], [[law, p["way"], p["late"], p["way"] / 0.1] for law, p in numbers["pile"].items()])
-    text += "\nThe elastic pile settles by its numerical shear modulus, the same few centimetres at every spacing, and then stands; the regularised one creeps on.\n"
+    text += "\nThe elastic pile settles by a few centimetres; the regularised one creeps several times as far.\n"
     text += f"\nWhere slopes of phi = 25 deg begin to fail: a layer {THICKNESS:g} m thick on an incline (its middle moves faster in the last half second of 2 s than in the one before), and a heap " \
             f"{HEIGHT:g} m high (a hundredth of it has moved further than dx in 5 s):\n\n"
     rows = []
