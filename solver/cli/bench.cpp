@@ -73,7 +73,7 @@ Model model_of(const BenchOptions& o, const Json& document, const Setting& s) {
     std::snprintf(spacing, sizeof spacing, "particle_spacing_m=%.9g", dx);
     std::vector<std::string> overrides = o.overrides;
     overrides.insert(overrides.end(), {spacing, "numerics.integrator=" + s.integrator, "rheology.yield=" + s.yield,
-                                                "numerics.precision=" + s.precision, "max_particles=8000000"});
+                                       "numerics.precision=" + s.precision, "max_particles=8000000"});
     return load_case(document, directory, overrides).value.model;
   };
   double dx = document.at("particle_spacing_m").get<double>();

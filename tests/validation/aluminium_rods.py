@@ -9,6 +9,8 @@ from snapshots import Snapshots, surface
 
 TITLE = "Aluminium rods"
 SOURCE = "Bui, Fukagawa, Sako & Ohno, Int. J. Numer. Anal. Meth. Geomech. 32 (2008) 1537-1570: phi 19.8 deg, c 0, column 0.2 x 0.1 m"
+NOT_MET = ["failure line, rms over the height"]
+REMARKS = "The contour of 5 mm lies below the measured failure line by a little more than the tenth of the height that was wanted."
 HEIGHT, TOE = 0.1, 0.43  # [m]; the experiment's toe lies between 0.42 and 0.44
 
 
@@ -55,7 +57,7 @@ def criteria(numbers):
     apart = np.interp(x, line[:, 0], line[:, 1]) - y
     return [at_most("surface, rms over the height", finest["rms_over_height"], 0.10),
             at_most("toe, relative error", abs(finest["toe_m"] / TOE - 1), 0.08),
-            at_most("failure line, rms over the height", float(np.sqrt(np.mean(apart ** 2))) / HEIGHT, 0.15)]
+            at_most("failure line, rms over the height", float(np.sqrt(np.mean(apart ** 2))) / HEIGHT, 0.10)]
 
 
 def section(numbers, directory):

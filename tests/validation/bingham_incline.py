@@ -11,6 +11,8 @@ from snapshots import Snapshots
 
 TITLE = "Bingham layer on an incline"
 SOURCE = "closed form: G = rho g sin(theta), plug above Y = h - tau_y/G, u = U (1 - ((y - Y)/Y)^2) below it, U = G Y^2/(2 eta), flux U (h - Y/3)"
+NOT_MET = ["rms error of the profile over U"]
+REMARKS = "The profile was wanted within 1.6 dx/h of U; with the default kernel it is within 2.5 dx/h. It converges, but its error is half as large again."
 THICKNESS, DENSITY, TAU_Y, ETA, THETA = 0.5, 1500.0, 1000.0, 900.0, math.radians(20)
 G = DENSITY * 9.81 * math.sin(THETA)
 Y = THICKNESS - TAU_Y / G
@@ -61,8 +63,8 @@ def errors_of_flux(numbers):
 def criteria(numbers):
     levels = numbers["levels"]
     order = order_of_convergence([l["spacing_m"] for l in levels], [l["rms"] for l in levels])
-    return [at_most(f"rms error of the profile over U, dx = {levels[-1]['spacing_m']:g} m", levels[-1]["rms"], 2.7 * levels[-1]["spacing_m"] / THICKNESS),
-            at_most("error of the flux", errors_of_flux(numbers)[-1], 2.2 * levels[-1]["spacing_m"] / THICKNESS),
+    return [at_most(f"rms error of the profile over U, dx = {levels[-1]['spacing_m']:g} m", levels[-1]["rms"], 1.6 * levels[-1]["spacing_m"] / THICKNESS),
+            at_most("error of the flux", errors_of_flux(numbers)[-1], 2 * levels[-1]["spacing_m"] / THICKNESS),
             at_most("minus the order of convergence of the profile", -order, -0.8)]
 
 

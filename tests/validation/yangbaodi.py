@@ -8,6 +8,9 @@ from experiment import table, within
 
 TITLE = "Landslide like Yangbaodi"
 SOURCE = "[Z20] section 3.2: run-out 140 m beyond the toe, phi = 28 deg. The profile is synthetic (the paper's is a figure), so this is no independent check"
+NOT_MET = ["run-out beyond the toe at 28 deg", "friction angle for 140 m"]
+REMARKS = ("The synthetic profile was shaped for 140 m with walls that carried too little shear; with walls that carry all of it the slide stops short, and the "
+           "profile has not been shaped again.")
 TOE, RUNOUT = 102.0, 140.0
 
 
@@ -31,8 +34,8 @@ def angle_for(rows):
 
 def criteria(numbers):
     at_28 = next(r for r in numbers["rows"] if r["phi_deg"] == 28)
-    return [within("run-out beyond the toe at 28 deg, connected body [m]", at_28["connected_m"], 0.75 * RUNOUT, 1.25 * RUNOUT),
-            within("friction angle for 140 m [deg]", angle_for(numbers["rows"]), 23, 29)]
+    return [within("run-out beyond the toe at 28 deg, connected body [m]", at_28["connected_m"], 0.9 * RUNOUT, 1.1 * RUNOUT),
+            within("friction angle for 140 m [deg]", angle_for(numbers["rows"]), 27, 29)]
 
 
 def section(numbers, directory):
