@@ -12,6 +12,7 @@
 #include <iostream>
 #include <optional>
 #include <random>
+#include <utility>
 
 #include "case/load.hpp"
 #include "cli/signals.hpp"
@@ -69,12 +70,14 @@ std::uint64_t choose_seed(const RunOptions& options, const LoadedCase& loaded) {
   return ((std::uint64_t{entropy()} << 32) | entropy()) & ((1ull << 53) - 1);
 }
 
-/// The run's files and when each is due.
+/// The run's files and when each is due. Snapshots are written by a thread of their own, the first one too.
 class Recorder {
  public:
   Recorder(const fs::path& directory, const Simulation& simulation, const Model& model, bool resumed)
-      : history_file_(directory / "history.csv"), snapshots_(open(directory / "snapshots.vtkhdf", simulation, resumed)),
-        due_(model.time.snapshots), history_step_(model.time.end / history_rows) {
+      : history_file_(directory / "history.csv"), due_(model.time.snapshots), history_step_(model.time.end / history_rows) {
+    const fs::path path = directory / "snapshots.vtkhdf";
+    if (resumed) snapshots_.emplace(SnapshotWriter::resume(path, simulation.time()));
+    else write([this, path, frame = simulation.frame()] { snapshots_.emplace(path, frame); });
     if (resumed && fs::exists(history_file_))
       for (const HistoryRow& row : read_history(history_file_))
         if (row.step <= simulation.steps()) history_.push_back(row);
@@ -83,12 +86,13 @@ class Recorder {
   }
 
   /// To be called after every step. Snapshots are taken at the first step at or after their time: a step is never shortened for them.
+  /// @throws IoError when a snapshot could not be written
   void record(const Simulation& simulation) {
+    if (writing_.valid() && writing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) writing_.get();
     if (simulation.time() >= history_.back().time + history_step_) history_.push_back(simulation.history_row());
     if (due_.empty() || simulation.time() < due_.front()) return;
     settle();
-    // Written while the run goes on.
-    writing_ = std::async(std::launch::async, [this, frame = simulation.frame()] { snapshots_.append(frame); });
+    write([this, frame = simulation.frame()] { snapshots_->append(frame); });
     while (!due_.empty() && due_.front() <= simulation.time()) due_.erase(due_.begin());
   }
   /// Waits until the last snapshot is in its file. To be called before anything else that uses HDF5.
@@ -101,17 +105,19 @@ class Recorder {
     if (history_.back().step < simulation.steps()) history_.push_back(simulation.history_row());
     write_history();
     settle();
-    snapshots_.append(simulation.frame());
-    snapshots_.close();
+    snapshots_->append(simulation.frame());
+    snapshots_->close();
   }
 
  private:
-  static SnapshotWriter open(const fs::path& path, const Simulation& simulation, bool resumed) {
-    return resumed ? SnapshotWriter::resume(path, simulation.time()) : SnapshotWriter(path, simulation.frame());
+  /// Beside the run, which goes on.
+  template <class Task>
+  void write(Task&& task) {
+    writing_ = std::async(std::launch::async, std::forward<Task>(task));
   }
 
   fs::path history_file_;
-  SnapshotWriter snapshots_;
+  std::optional<SnapshotWriter> snapshots_;
   std::vector<double> due_;
   double history_step_;
   std::vector<HistoryRow> history_;

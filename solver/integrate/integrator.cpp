@@ -60,15 +60,4 @@ void step_leapfrog(Soil& soil, StepStart& start, double dt, const Evaluate& eval
   }
 }
 
-Motion step_rk2(VectorisedFlow& flow, Soil& soil, WallParticles& walls, double dt) {
-  flow.evaluate(soil, walls, 0.0, true);
-  flow.evaluate(soil, walls, 0.5 * dt, false);
-  return flow.move(soil, dt, true);
-}
-
-Motion step_leapfrog(VectorisedFlow& flow, Soil& soil, WallParticles& walls, double dt) {
-  flow.evaluate(soil, walls, 0.5 * dt, true);
-  return flow.move(soil, dt, false);
-}
-
 }  // namespace talus

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "particles/particles.hpp"
-#include "sph/vectorised_flow.hpp"
 
 namespace talus {
 
@@ -26,9 +25,5 @@ void step_rk2(Soil& soil, StepStart& start, double dt, const Evaluate& evaluate)
 /// the rates of the step before, so that forces depending on them stay second order.
 ///   x' = x + dt/2 v;  v <- v + dt a(x', v');  x <- x' + dt/2 v
 void step_leapfrog(Soil& soil, StepStart& start, double dt, const Evaluate& evaluate);
-
-/// The same steps by the vectorised loops, which look ahead without touching the state.
-Motion step_rk2(VectorisedFlow& flow, Soil& soil, WallParticles& walls, double dt);
-Motion step_leapfrog(VectorisedFlow& flow, Soil& soil, WallParticles& walls, double dt);
 
 }  // namespace talus

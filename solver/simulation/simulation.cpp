@@ -213,7 +213,7 @@ void Simulation::step(double until) {
   Motion motion;
   if (fast_) {
     const double before = fast_->times().total();
-    motion = rk2 ? step_rk2(*fast_, soil_, walls_, dt) : step_leapfrog(*fast_, soil_, walls_, dt);
+    motion = fast_->step(soil_, walls_, dt, rk2);
     evaluating = fast_->times().total() - before;
   } else {
     const Evaluate evaluate = [&](Soil& soil) { rhs_.evaluate(soil, walls_, soil_cells_, wall_cells_); };

@@ -14,6 +14,7 @@
 #include "simulation/frame.hpp"
 #include "simulation/model.hpp"
 #include "sph/right_hand_side.hpp"
+#include "sph/vectorised_flow.hpp"
 
 namespace talus {
 

@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 
 namespace talus {
@@ -98,14 +99,29 @@ void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const C
   }
 }
 
-/// Chunks of the soil's clusters for the calling thread: consecutive ones, with as many neighbours as those of the others.
-Chunk VectorisedFlow::share_of_thread() const {
-  const auto threads = static_cast<std::size_t>(omp_get_num_threads()), thread = static_cast<std::size_t>(omp_get_thread_num());
+/// Consecutive chunks of the soil's clusters for each thread, with as many neighbours as those of the others.
+void VectorisedFlow::share_out() {
+  const auto threads = static_cast<std::size_t>(omp_get_max_threads());
   const auto border = [&](std::size_t t) {
     const auto work = work_.back() * t / threads;
     return static_cast<std::size_t>(std::lower_bound(work_.begin(), work_.end(), work) - work_.begin());
   };
-  return {border(thread), border(thread + 1)};
+  shares_.resize(threads);
+  for (std::size_t t = 0; t < threads; ++t) shares_[t] = {.begin = border(t), .end = border(t + 1), .stress = border(t), .momentum = border(t)};
+}
+
+/// Calls f(chunk) for the chunks of the calling thread's share, then for what the others have left of theirs: a thread that the
+/// machine holds up does not hold up the rest. Makes the share of the other pass whole again, which a barrier must part from this one.
+/// Inside a parallel region.
+template <class F>
+void VectorisedFlow::for_chunks(std::size_t Share::* next, std::size_t Share::* other, F&& f) {
+  const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+  shares_[thread].*other = shares_[thread].begin;
+  for (std::size_t t = 0; t < shares_.size(); ++t) {
+    Share& share = shares_[(thread + t) % shares_.size()];
+    const std::atomic_ref<std::size_t> taken(share.*next);
+    for (std::size_t c; (c = taken.fetch_add(1, std::memory_order_relaxed)) < share.end;) f(c);
+  }
 }
 
 /// Inside a parallel region.
@@ -115,35 +131,48 @@ void VectorisedFlow::pack_active(const Soil& soil, double ahead) {
   for (std::size_t c = 0; c < chunks_of(n); ++c) pack_soil(flow_, k_, soil, ahead, chunk(c, n));
 }
 
-void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bool keep) {
-  Stopwatch watch;
-  const bool pack = ahead != 0.0 || !packed_now_;
-  packed_now_ = ahead == 0.0;
-#pragma omp parallel
-  {
-    if (pack) pack_active(soil, ahead);
+/// Inside a parallel region.
+void VectorisedFlow::evaluate_here(Soil& soil, WallParticles& walls, double ahead, bool keep, bool pack, Stopwatch& watch) {
+  if (pack) pack_active(soil, ahead);
 #pragma omp master
-    watch.lap(times_.update);
-    const Chunk share = share_of_thread();
-    for (std::size_t c = share.begin; c < share.end; ++c) stress_pass(flow_, k_, soil, ahead, keep, c);
+  watch.lap(times_.update);
+  for_chunks(&Share::stress, &Share::momentum, [&](std::size_t c) { stress_pass(flow_, k_, soil, ahead, keep, c); });
 #pragma omp barrier
 #pragma omp master
-    watch.lap(times_.gradient);
+  watch.lap(times_.gradient);
 #pragma omp for schedule(static)
-    for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, k_, walls, c);
+  for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, k_, walls, c);
 #pragma omp master
-    watch.lap(times_.walls);
-    for (std::size_t c = share.begin; c < share.end; ++c) momentum_pass(flow_, k_, c);
-  }
+  watch.lap(times_.walls);
+  for_chunks(&Share::momentum, &Share::stress, [&](std::size_t c) { momentum_pass(flow_, k_, c); });
+#pragma omp barrier
+#pragma omp master
   watch.lap(times_.momentum);
 }
 
-Motion VectorisedFlow::move(Soil& soil, double dt, bool middle) {
+void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bool keep) {
+  Stopwatch watch;
+  share_out();
+  const bool pack = ahead != 0.0 || !packed_now_;
+  packed_now_ = ahead == 0.0;
+#pragma omp parallel
+  evaluate_here(soil, walls, ahead, keep, pack, watch);
+}
+
+Motion VectorisedFlow::step(Soil& soil, WallParticles& walls, double dt, bool rk2) {
+  Stopwatch watch;
+  share_out();
   const std::size_t n = soil.n_active;
   Motion motion;
 #pragma omp declare reduction(extremes : Motion : omp_out = omp_out.with(omp_in))
-#pragma omp parallel for schedule(static) reduction(extremes : motion)
-  for (std::size_t c = 0; c < chunks_of(n); ++c) motion = motion.with(move_soil(flow_, k_, soil, dt, middle, chunk(c, n)));
+#pragma omp parallel reduction(extremes : motion)
+  {
+    if (rk2) evaluate_here(soil, walls, 0.0, true, !packed_now_, watch);
+    evaluate_here(soil, walls, 0.5 * dt, !rk2, true, watch);
+#pragma omp for schedule(static) nowait
+    for (std::size_t c = 0; c < chunks_of(n); ++c) motion = motion.with(move_soil(flow_, k_, soil, dt, rk2, chunk(c, n)));
+  }
+  watch.lap(times_.update);
   packed_now_ = true;
   return motion;
 }

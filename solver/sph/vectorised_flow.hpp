@@ -31,11 +31,11 @@ class VectorisedFlow {
   /// Time spent in the passes so far.
   const StageTimes& times() const { return times_; }
 
-  /// Moves the state on by dt [s] at the present rates; positions with the velocities of the last evaluation (`middle`) or with
-  /// the mean of the old and the new ones.
-  Motion move(Soil& soil, double dt, bool middle);
+  /// Moves the state on by dt [s]: midpoint Runge-Kutta (`rk2`: evaluates here and ahead, moves with the velocities of the middle),
+  /// or leapfrog (evaluates ahead, moves with the mean of the old and the new velocities). One parallel region.
+  Motion step(Soil& soil, WallParticles& walls, double dt, bool rk2);
 
-  /// Tells that something else than move() has changed the state since.
+  /// Tells that something else than step() has changed the state since.
   void state_changed() { packed_now_ = false; }
 
   /// Writes rates, p, s**, gamma_dot of the last evaluation into the arrays of `soil`, and takes them over from there.
@@ -48,11 +48,19 @@ class VectorisedFlow {
 
  private:
   void pack_active(const Soil& soil, double ahead);
-  Chunk share_of_thread() const;
+  /// Chunks up to `end` for one thread; the next ones to be taken in each pass. A line of the cache to itself.
+  struct alignas(64) Share {
+    std::size_t begin, end, stress, momentum;
+  };
+  void share_out();
+  template <class F>
+  void for_chunks(std::size_t Share::* next, std::size_t Share::* other, F&& f);
+  void evaluate_here(Soil& soil, WallParticles& walls, double ahead, bool keep, bool pack, Stopwatch& watch);
 
   FlowConstants k_;
   PackedFlow flow_;
   std::vector<std::size_t> work_ = {0};  ///< of all chunks before each one
+  std::vector<Share> shares_;
   bool packed_now_ = false;  ///< the present state is packed
   StageTimes times_;
 };

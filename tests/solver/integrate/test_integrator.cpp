@@ -6,6 +6,7 @@
 #include <string>
 
 #include "random_soil.hpp"
+#include "sph/vectorised_flow.hpp"
 
 namespace talus {
 namespace {
@@ -98,7 +99,7 @@ Soil after_steps(Integrator integrator, bool vectorised, double* way) {
   for (int n = 0; n < 10; ++n) {
     const Soil before = soil;
     if (vectorised) {
-      const double claimed = (is_rk2 ? step_rk2(flow, soil, walls, dt) : step_leapfrog(flow, soil, walls, dt)).way;
+      const double claimed = flow.step(soil, walls, dt, is_rk2).way;
       double gone = 0.0;
       for (std::size_t i = 0; i < soil.size(); ++i) gone = std::max(gone, norm(soil.position(i) - before.position(i)));
       EXPECT_NEAR(claimed, gone, 1e-6 * gone);
