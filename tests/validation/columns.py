@@ -11,7 +11,8 @@ from snapshots import Snapshots, surface
 
 TITLE = "Granular columns"
 SOURCE = ("quasi-2D channels: Lube, Huppert, Sparks & Freundt, Phys. Rev. E 72 (2005) 041301: run-out 1.2 a (a < 1.8), 1.9 a^(2/3) (a > 2.8), height as a^(2/5); "
-          "Lajeunesse, Monnier & Homsy, Phys. Fluids 17 (2005) 103302: exponents 1 and 2/3 (kink near a = 3), height as a^(1/3). Two-dimensional discs (no side walls): "
+          "Lajeunesse, Monnier & Homsy, Phys. Fluids 17 (2005) 103302: exponents 1 and 2/3 (kink near a = 3), height as a^(1/3); "
+          "Balmforth & Kerswell, J. Fluid Mech. 538 (2005) 399-428, one exponent for all a: run-out 0.9 +/- 0.1 in wide channels, 0.65 +/- 0.05 in narrow ones, height 0.4 and 0.5. Two-dimensional discs (no side walls): "
           "Staron & Hinch, J. Fluid Mech. 545 (2005) 1-27: run-out 2.5 a (a < 2), 3.25 a^0.7, height as a^0.35. All in half widths of the column")
 REMARKS = ("Run-outs lie with the channels', which are shorter than those of discs. Both exponents are somewhat above the published ones: short columns lose a relatively large part "
            "of their run-out to the rule of two rows; why those of tall ones are above is not known.")
@@ -62,7 +63,7 @@ def exponent(rows, quantity, keep):
 def exponents(numbers):
     rows = numbers["rows"]
     return {"run-out, a < 2.5": exponent(rows, "runout", lambda a: a < KINK), "run-out, a > 2.5": exponent(rows, "runout", lambda a: a > KINK),
-            "height, a > 1.15": exponent(rows, "height", lambda a: a > 1.15)}
+            "run-out, all a": exponent(rows, "runout", lambda a: True), "height, a > 1.15": exponent(rows, "height", lambda a: a > 1.15)}
 
 
 def criteria(numbers):

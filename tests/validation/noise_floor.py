@@ -20,7 +20,7 @@ VARIANTS = {
 
 def measure(work, coarse):
     levels = []
-    for spacing, variants, replicates in [(0.4, VARIANTS, 8)] + ([] if coarse else [(0.2, VARIANTS, 8), (0.1, ("default",), 8)]):
+    for spacing, variants, replicates in [(0.4, VARIANTS, 8)] + ([] if coarse else [(0.2, VARIANTS, 8), (0.1, ("default", "cubic spline, h = 1.2 dx"), 8)]):
         for name in variants:
             directory = work / "noise" / f"{name.replace(' ', '-').replace(',', '').replace('=', '')}-{spacing:g}"
             study = talus_runs.study(talus_runs.CASES / "illustrative.json", directory, 2,
