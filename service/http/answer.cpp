@@ -84,10 +84,15 @@ Answer answer(const Incoming& request, const Router& router, Service& service, c
   answer.headers.emplace_back("X-Request-Id", id);
   ++service.requests;
   if (answer.status >= 500) ++service.failures;
-  const auto ms = std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - begin).count() / 1000.0;
+  const auto ms =
+      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - begin).count() / 1000.0;
   if (!is_open(request.path))
-    log_info("request", {{"request_id", id}, {"subject", exchange.subject}, {"method", request.method}, {"path", request.path},
-                         {"status", answer.status}, {"ms", ms}});
+    log_info("request", {{"request_id", id},
+                         {"subject", exchange.subject},
+                         {"method", request.method},
+                         {"path", request.path},
+                         {"status", answer.status},
+                         {"ms", ms}});
   return answer;
 }
 

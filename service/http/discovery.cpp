@@ -2,6 +2,7 @@
 
 #include "http/documents.hpp"
 #include "http/links.hpp"
+#include "http/lookup.hpp"
 #include "http/service.hpp"
 
 namespace talus::service {
@@ -34,15 +35,25 @@ Json links_of(const Exchange& exchange, const std::string& name) {
 }
 
 Json processes(const Exchange& exchange) {
-  Json list = Json::array();
+  const Incoming& request = exchange.request;
+  const std::int64_t limit = whole_number(request, "limit", 1, 10'000).value_or(10);
+  const std::int64_t first = whole_number(request, "offset", 0, 10'000).value_or(0);
+  Json list = Json::array(), links = {link(exchange, "/processes" + query_text(request), "self", "Processes")};
+  std::int64_t i = 0;
   for (const auto& [name, text] : process_texts()) {
+    if (i++ < first) continue;
+    if (i > first + limit) {
+      const std::string next = query_text(request, {{"offset", std::to_string(first + limit)}});
+      links.push_back(link(exchange, "/processes" + next, "next", "The next processes"));
+      break;
+    }
     Json summary = Json::parse(text);
     summary.erase("inputs");
     summary.erase("outputs");
     summary["links"] = links_of(exchange, name);
     list.push_back(std::move(summary));
   }
-  return {{"processes", list}, {"links", {link(exchange, "/processes", "self", "Processes")}}};
+  return {{"processes", list}, {"links", links}};
 }
 
 Json process(const Exchange& exchange) {

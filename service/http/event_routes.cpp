@@ -45,7 +45,8 @@ Job wait_for_change(const Exchange& exchange, Service& service, std::int64_t see
 }
 
 Answer long_poll(Exchange& exchange, Service& service, std::int64_t seconds) {
-  const std::int64_t seen = whole_number(exchange.request, "since", 0, std::int64_t{1} << 62).value_or(job_of(exchange, service).version);
+  const std::int64_t seen =
+      whole_number(exchange.request, "since", 0, std::int64_t{1} << 62).value_or(job_of(exchange, service).version);
   const Place place(service);
   const Job job = wait_for_change(exchange, service, seen, Steady::now() + std::chrono::seconds(seconds));
   Json info = status_info(job, exchange);
@@ -72,10 +73,12 @@ void stream(const Exchange& exchange, Service& service, std::int64_t seen, const
 Answer events(Exchange& exchange, Service& service) {
   only_parameters(exchange.request, {"wait", "since"});
   job_of(exchange, service);
-  if (const auto seconds = whole_number(exchange.request, "wait", 0, longest_wait)) return long_poll(exchange, service, *seconds);
+  if (const auto seconds = whole_number(exchange.request, "wait", 0, longest_wait))
+    return long_poll(exchange, service, *seconds);
   std::int64_t seen = 0;
   const std::string last = exchange.request.header("last-event-id");
-  if (last.size() <= 18 && last.find_first_not_of("0123456789") == std::string::npos && !last.empty()) seen = std::stoll(last);
+  if (last.size() <= 18 && last.find_first_not_of("0123456789") == std::string::npos && !last.empty())
+    seen = std::stoll(last);
   // The exchange's request is gone when the stream runs: it gets a copy.
   const auto place = std::make_shared<Place>(service);
   const auto request = std::make_shared<Incoming>(exchange.request);

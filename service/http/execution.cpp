@@ -5,6 +5,7 @@
 #include "http/echo.hpp"
 #include "http/links.hpp"
 #include "http/lookup.hpp"
+#include "http/results.hpp"
 
 namespace talus::service {
 namespace {
@@ -50,7 +51,8 @@ Request read_request(const Incoming& incoming, const std::vector<std::string>& k
   return request;
 }
 
-Answer accepted(Exchange& exchange, Service& service, const std::function<std::optional<Job>(const Store::Answer&)>& submit) {
+Answer accepted(Exchange& exchange, Service& service,
+                const std::function<std::optional<Job>(const Store::Answer&)>& submit) {
   if (auto again = told_before(exchange, service)) return *again;
   const std::optional<Job> job = submit(keeping(exchange, 201, true));
   if (!job) {  // the same key, at the same moment
@@ -65,7 +67,7 @@ Answer accepted(Exchange& exchange, Service& service, const std::function<std::o
 Answer study(Exchange& exchange, Service& service) {
   const Request request = read_request(exchange.request, {"histogram", "summary"});
   return accepted(exchange, service, [&](const Store::Answer& keep) {
-    return service.jobs.submit_study(exchange.subject, request.inputs, request.outputs, keep);
+    return service.jobs.submit_study(exchange.subject, request.inputs, request.outputs, request.raw, keep);
   });
 }
 
@@ -77,7 +79,8 @@ void wait(double seconds, Service& service) {
   }
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (std::chrono::steady_clock::now() < end && !service.stopping())
-    std::this_thread::sleep_for(std::min<std::chrono::duration<double>>(std::chrono::milliseconds(50), end - std::chrono::steady_clock::now()));
+    std::this_thread::sleep_for(
+        std::min<std::chrono::duration<double>>(std::chrono::milliseconds(50), end - std::chrono::steady_clock::now()));
   --service.streams;
 }
 
@@ -86,14 +89,10 @@ Answer echo(Exchange& exchange, Service& service) {
   const Json inputs = read_echo_inputs(request.inputs);
   if (prefers_async(exchange.request))
     return accepted(exchange, service, [&](const Store::Answer& keep) {
-      return service.jobs.submit_echo(exchange.subject, inputs, request.outputs, keep);
+      return service.jobs.submit_echo(exchange.subject, inputs, request.outputs, request.raw, keep);
     });
   wait(inputs.value("pause", 0.0), service);
-  const Json results = echo_results(inputs, request.outputs);
-  if (!request.raw || results.size() != 1) return json_answer(results);
-  const Json& only = results.begin().value();
-  if (only.is_string()) return {.type = "text/plain", .body = only.get<std::string>()};
-  return json_answer(only);
+  return results_answer(echo_results(inputs, request.outputs), request.raw, exchange.request);
 }
 
 }  // namespace

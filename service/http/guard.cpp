@@ -9,9 +9,9 @@ namespace talus::service {
 namespace {
 
 /// The headers that a handler looks at, and how often each may stand.
-constexpr std::array<std::string_view, 11> handed_on{
-    "host",   "accept",        "authorization",     "prefer",            "idempotency-key", "if-none-match",
-    "origin", "last-event-id", "x-forwarded-proto", "x-forwarded-host",  "x-request-id"};
+constexpr std::array<std::string_view, 10> handed_on{
+    "host",          "accept", "authorization", "prefer",            "idempotency-key",
+    "if-none-match", "origin", "last-event-id", "x-forwarded-proto", "x-request-id"};
 
 std::string lower(std::string_view text) {
   std::string out(text);
@@ -38,10 +38,13 @@ bool is_value(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c == '\t' || (c >= 32 && c != 127); });
 }
 
-/// The library decodes %0d and %0a in values, and a handler might send one back.
+/// The library decodes %0d, %0a and %u000a in values, and a handler might send one back.
 bool hides_control(std::string_view value) {
-  for (std::size_t i = value.find('%'); i != std::string_view::npos && i + 2 < value.size(); i = value.find('%', i + 1))
-    if (value[i + 1] == '0' || value[i + 1] == '1' || lower(value.substr(i + 1, 2)) == "7f") return true;
+  for (std::size_t i = value.find('%'); i != std::string_view::npos && i + 2 < value.size();
+       i = value.find('%', i + 1)) {
+    const std::string code = lower(value.substr(i + 1, 2));
+    if (code[0] == '0' || code[0] == '1' || code[0] == 'u' || code == "7f") return true;
+  }
   return false;
 }
 
@@ -149,7 +152,8 @@ Head judge(std::string_view head, const GuardLimits& limits) {
   if (limits.loopback_names_only && !host.empty() && !is_loopback_name(host))
     return refused(403, "without tokens talusd answers only to localhost, 127.0.0.1 and [::1]");
   if (limits.loopback_names_only && count("origin") > 0) {
-    const auto origin = std::find_if(lines.begin(), lines.end(), [](const Line& line) { return line.name == "origin"; });
+    const auto origin =
+        std::find_if(lines.begin(), lines.end(), [](const Line& line) { return line.name == "origin"; });
     if (origin->value != "http://" + std::string(host))
       return refused(403, "without tokens talusd takes nothing from pages of other sites");
   }

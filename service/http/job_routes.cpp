@@ -1,44 +1,66 @@
 // /jobs, /jobs/{id}, /jobs/{id}/results
 
+#include <algorithm>
+
 #include "http/echo.hpp"
 #include "http/links.hpp"
 #include "http/lookup.hpp"
+#include "http/results.hpp"
 
 namespace talus::service {
 namespace {
 
 constexpr int default_limit = 100, max_limit = 1000;
 
+[[noreturn]] void bad(const std::string& name, const std::string& why) {
+  throw Refusal(Reason::bad_request, "a query parameter is not right", {{"?" + name, why}});
+}
+
+/// Every value of a parameter that may stand more than once and hold a list.
+std::vector<std::string> values_of(const Incoming& request, const std::string& name) {
+  std::vector<std::string> all;
+  const auto [first, last] = request.query.equal_range(name);
+  for (auto at = first; at != last; ++at)
+    for (std::string& value : comma_list(at->second)) all.push_back(std::move(value));
+  return all;
+}
+
+/// A date-time of RFC 3339, or two with a slash between, of which one may be ".." or missing.
+void read_datetime(const std::string& text, JobFilter& filter) {
+  const auto end_of = [](const std::string& part) -> std::optional<Milliseconds> {
+    if (part.empty() || part == "..") return std::nullopt;
+    const auto time = utc_time(part);
+    if (!time)
+      bad("datetime", "must be a date-time (2026-01-31T12:00:00Z) or an interval (DATETIME/DATETIME, ../DATETIME)");
+    return time;
+  };
+  const std::size_t slash = text.find('/');
+  filter.created_from = end_of(text.substr(0, slash));
+  filter.created_to = slash == std::string::npos ? filter.created_from : end_of(text.substr(slash + 1));
+  if (!filter.created_from && !filter.created_to) bad("datetime", "is open at both ends");
+}
+
 JobFilter filter_of(const Exchange& exchange) {
+  constexpr std::int64_t most_seconds = std::int64_t{1} << 40;
   const Incoming& request = exchange.request;
-  only_parameters(request, {"limit", "status", "processID", "type", "after"});
+  only_parameters(request, {"limit", "status", "processID", "type", "datetime", "minDuration", "maxDuration", "after"});
   JobFilter filter{.subject = exchange.subject};
   filter.limit = static_cast<int>(whole_number(request, "limit", 1, 1'000'000).value_or(default_limit));
   filter.limit = std::min(filter.limit, max_limit);
   filter.before = whole_number(request, "after", 0, std::int64_t{1} << 62);
-  const auto [first, last] = request.query.equal_range("status");
-  for (auto at = first; at != last; ++at)
-    for (const std::string& name : comma_list(at->second)) {
-      const auto state = job_state(name);
-      if (!state)
-        throw Refusal(Reason::bad_request, "a query parameter is not right",
-                      {{"?status", "must be accepted, running, successful, failed or dismissed"}});
-      filter.states.push_back(*state);
-    }
-  const auto [begin, end] = request.query.equal_range("processID");
-  for (auto at = begin; at != end; ++at)
-    for (const std::string& name : comma_list(at->second)) filter.processes.push_back(name);
-  if (const auto type = request.parameter("type"); type && *type != "process")
-    throw Refusal(Reason::bad_request, "a query parameter is not right", {{"?type", "must be process"}});
+  for (const std::string& name : values_of(request, "status")) {
+    const auto state = job_state(name);
+    if (!state) bad("status", "must be accepted, running, successful, failed or dismissed");
+    filter.states.push_back(*state);
+  }
+  filter.processes = values_of(request, "processID");
+  const std::vector<std::string> types = values_of(request, "type");
+  if (std::any_of(types.begin(), types.end(), [](const std::string& type) { return type != "process"; }))
+    bad("type", "must be process");
+  if (const auto text = request.parameter("datetime")) read_datetime(*text, filter);
+  if (const auto least = whole_number(request, "minDuration", 0, most_seconds)) filter.least_duration = 1000 * *least;
+  if (const auto most = whole_number(request, "maxDuration", 0, most_seconds)) filter.most_duration = 1000 * *most;
   return filter;
-}
-
-/// The text of a query again, less `after`.
-std::string query_text(const Incoming& request) {
-  std::string text;
-  for (const auto& [name, value] : request.query)
-    if (name != "after" && value.find_first_of("&#%+ \"<>") == std::string::npos) text += name + "=" + value + "&";
-  return text;
 }
 
 Answer list(Exchange& exchange, Service& service) {
@@ -47,16 +69,14 @@ Answer list(Exchange& exchange, Service& service) {
   std::vector<Job> jobs = service.store.jobs(filter);
   const bool more = jobs.size() > limit;
   if (more) jobs.resize(limit);
-  Json all = Json::array(), links = {link(exchange, "/jobs", "self", "Jobs")};
+  Json all = Json::array(), links = {link(exchange, "/jobs" + query_text(exchange.request), "self", "Jobs")};
   for (const Job& job : jobs) all.push_back(status_info(job, exchange));
-  if (more)
-    links.push_back(link(exchange, "/jobs?" + query_text(exchange.request) + "after=" + std::to_string(jobs.back().number),
-                         "next", "The next jobs"));
+  if (more) {
+    const std::string next = query_text(exchange.request, {{"after", std::to_string(jobs.back().number)}});
+    links.push_back(link(exchange, "/jobs" + next, "next", "The next jobs"));
+  }
   return json_answer({{"jobs", all}, {"links", links}});
 }
-
-/// An object can only stand in a results document as a qualified value.
-Json qualified(Json value) { return {{"value", std::move(value)}, {"mediaType", "application/json"}}; }
 
 Answer results(Exchange& exchange, Service& service) {
   const Job job = job_of(exchange, service);
@@ -65,14 +85,15 @@ Answer results(Exchange& exchange, Service& service) {
   if (job.state != JobState::successful) throw Refusal(Reason::result_not_ready, "the job has not ended yet");
   const Json asked = Json::parse(job.inputs);
   const auto outputs = asked.at("outputs").get<std::vector<std::string>>();
-  if (job.process == "echo") return json_answer(echo_results(asked.at("inputs"), outputs));
-  Json document = Json::object();
+  const bool raw = asked.value("raw", false);
+  if (job.process == "echo") return results_answer(echo_results(asked.at("inputs"), outputs), raw, exchange.request);
+  Json values = Json::object();
   for (const std::string& output : outputs) {
-    if (output == "summary") document[output] = qualified(service.jobs.summary(job));
+    if (output == "summary") values[output] = service.jobs.summary(job);
     if (output == "histogram")
-      document[output] = qualified(service.jobs.distribution(job, quantity_index(asked.at("quantity"), ""), {}, {}));
+      values[output] = service.jobs.distribution(job, quantity_index(asked.at("quantity"), ""), {}, {});
   }
-  return json_answer(document);
+  return results_answer(values, raw, exchange.request);
 }
 
 Answer dismiss(Exchange& exchange, Service& service) {

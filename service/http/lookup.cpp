@@ -19,6 +19,22 @@ std::optional<Number> parsed(const std::string& text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
+/// RFC 3986 2.1; a comma may stand for itself in a query.
+std::string percent_encoded(const std::string& text) {
+  constexpr const char* digits = "0123456789ABCDEF";
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                       std::string_view("-._~,").find(c) != std::string_view::npos;
+    if (plain)
+      out += c;
+    else
+      out += {'%', digits[byte >> 4], digits[byte & 15]};
+  }
+  return out;
+}
+
 [[noreturn]] void bad_parameter(const std::string& name, const std::string& why) {
   throw Refusal(Reason::bad_request, "a query parameter is not right", {{"?" + name, why}});
 }
@@ -45,7 +61,8 @@ Job job_of(const Exchange& exchange, Service& service) {
 Job study_of(const Exchange& exchange, Service& service) {
   Job job = job_of(exchange, service);
   if (job.process != "influence-zone") throw Refusal(Reason::not_found, "a job of this process has no realizations");
-  if (job.state == JobState::dismissed) throw Refusal(Reason::job_dismissed, "the job was dismissed; its files are gone");
+  if (job.state == JobState::dismissed)
+    throw Refusal(Reason::job_dismissed, "the job was dismissed; its files are gone");
   return job;
 }
 
@@ -70,6 +87,17 @@ std::optional<double> real_number(const Incoming& request, const std::string& na
 void only_parameters(const Incoming& request, std::initializer_list<const char*> known) {
   for (const auto& [name, value] : request.query)
     if (std::find(known.begin(), known.end(), name) == known.end()) bad_parameter(name, "is not a parameter here");
+}
+
+std::string query_text(const Incoming& request, const std::optional<std::pair<std::string, std::string>>& set) {
+  std::string text;
+  const auto add = [&text](const std::string& name, const std::string& value) {
+    text += (text.empty() ? "?" : "&") + name + "=" + percent_encoded(value);
+  };
+  for (const auto& [name, value] : request.query)
+    if (!set || name != set->first) add(percent_encoded(name), value);
+  if (set) add(set->first, set->second);
+  return text;
 }
 
 std::vector<std::string> comma_list(const std::string& text) {

@@ -40,8 +40,8 @@ Json bins_of(const Json& distribution, const Exchange& exchange, const Job& job)
   Json bins = Json::array();
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const bool last = i + 1 == counts.size();
-    const std::string query = "?quantity=" + distribution.at("quantity").get<std::string>() + "&min=" + edges[i].dump() +
-                              (last ? "&max=" : "&below=") + edges[i + 1].dump();
+    const std::string query = "?quantity=" + distribution.at("quantity").get<std::string>() +
+                              "&min=" + edges[i].dump() + (last ? "&max=" : "&below=") + edges[i + 1].dump();
     bins.push_back({{"from", edges[i]},
                     {"to", edges[i + 1]},
                     {"count", counts[i]},
@@ -59,7 +59,8 @@ Answer histogram(Exchange& exchange, Service& service) {
   const auto bins = whole_number(request, "bins", 1, max_bins);
   const std::vector<double> edges = edges_of(request);
   if (bins && !edges.empty()) bad("bins", "goes without edges");
-  Json answer = service.jobs.distribution(job, quantity, bins ? std::optional(static_cast<int>(*bins)) : std::nullopt, edges);
+  Json answer =
+      service.jobs.distribution(job, quantity, bins ? std::optional(static_cast<int>(*bins)) : std::nullopt, edges);
   answer["partial"] = !ended(job.state);
   answer["bins"] = bins_of(answer, exchange, job);
   return json_answer(answer);
@@ -97,7 +98,8 @@ Answer list(Exchange& exchange, Service& service) {
   filter.below = real_number(request, "below");
   filter.most = real_number(request, "max");
   filter.after = whole_number(request, "after", -1, most_realizations).value_or(-1);
-  const auto limit = std::min<std::int64_t>(max_limit, whole_number(request, "limit", 1, 1'000'000).value_or(default_limit));
+  const auto limit =
+      std::min<std::int64_t>(max_limit, whole_number(request, "limit", 1, 1'000'000).value_or(default_limit));
   filter.limit = static_cast<int>(limit) + 1;
   std::vector<Run> runs = service.store.runs(job.number, filter);
   const bool more = runs.size() > static_cast<std::size_t>(limit);
@@ -105,11 +107,8 @@ Answer list(Exchange& exchange, Service& service) {
   Json all = Json::array(), links = Json::array();
   for (const Run& run : runs) all.push_back(brief(run, exchange, job));
   if (more) {
-    std::string query;
-    for (const auto& [name, value] : request.query)
-      if (name != "after") query += name + "=" + value + "&";
-    links.push_back(link(exchange, "/jobs/" + job.id + "/realizations?" + query + "after=" +
-                                       std::to_string(runs.back().key.index), "next", "The next realizations"));
+    const std::string next = query_text(request, {{"after", std::to_string(runs.back().key.index)}});
+    links.push_back(link(exchange, "/jobs/" + job.id + "/realizations" + next, "next", "The next realizations"));
   }
   return json_answer({{"realizations", all}, {"links", links}});
 }
@@ -196,7 +195,7 @@ Answer extend(Exchange& exchange, Service& service) {
                   {{"/realizations", "must be how many to add, at least 1, and the only member"}});
   if (!service.jobs.extend(job, body.at("realizations").get<std::int64_t>(), keeping(exchange, 200, false)))
     if (auto again = told_before(exchange, service)) return *again;
-  return changed(exchange, *service.store.job(job.id), 200, false);
+  return changed(exchange, study_of(exchange, service), 200, false);  // dismissed meanwhile: 410
 }
 
 }  // namespace

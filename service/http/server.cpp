@@ -6,14 +6,15 @@
 #include <atomic>
 
 #include "http/problem.hpp"
+#include "support/log.hpp"
 
 namespace talus::service {
 namespace {
 
 constexpr int backlog = 1024;  ///< the library's own is 5
 
-/// One judged request as the library's stream: reads come from memory, writes go to the client. Without `override`: which
-/// of these there are depends on the library's version.
+/// One judged request as the library's stream: reads come from memory, writes go to the client. Without `override`:
+/// which of these there are depends on the library's version.
 class RequestStream : public httplib::Stream {
  public:
   RequestStream(Connection& connection, const WholeRequest& request)
@@ -104,7 +105,8 @@ class Server::Implementation : public httplib::Server {
       fill(response, handle_(incoming(request)));
     };
     const std::string any = R"([\s\S]*)";
-    Get(any, answer), Post(any, answer), Put(any, answer), Patch(any, answer), Delete(any, answer), Options(any, answer);
+    Get(any, answer), Post(any, answer), Put(any, answer), Patch(any, answer), Delete(any, answer),
+        Options(any, answer);
     // Methods that the library knows but gives nobody: TRACE, CONNECT.
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       if (request.method != "TRACE" && request.method != "CONNECT" && request.method != "PRI")
@@ -144,6 +146,7 @@ class Server::Implementation : public httplib::Server {
       const auto next = connection.next();
       if (std::holds_alternative<Closed>(next)) return true;
       if (const auto* bad = std::get_if<BadRequest>(&next)) {
+        log_info("refused", {{"status", bad->status}, {"why", bad->why}});
         connection.write(raw_problem(*bad));
         break;
       }

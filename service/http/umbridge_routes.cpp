@@ -68,9 +68,11 @@ std::vector<const Parameter*> wanted(const Json& body) {
   if (!config.contains("parameters")) return all;
   if (!config.at("parameters").is_array()) invalid("config.parameters must be an array of names");
   for (const Json& name : config.at("parameters")) {
-    const auto at = std::find_if(std::begin(parameters), std::end(parameters), [&](const Parameter& p) { return name == p.name; });
+    const auto at =
+        std::find_if(std::begin(parameters), std::end(parameters), [&](const Parameter& p) { return name == p.name; });
     if (at == std::end(parameters)) invalid("config.parameters: " + dump(name) + " is not a parameter here");
-    if (std::find(all.begin(), all.end(), at) != all.end()) invalid(std::string("config.parameters names ") + at->name + " twice");
+    if (std::find(all.begin(), all.end(), at) != all.end())
+      invalid(std::string("config.parameters names ") + at->name + " twice");
     all.push_back(at);
   }
   return all;
@@ -109,7 +111,8 @@ Json evaluate(const Json& body, Json document, Service& service, Terms& terms) {
   if (!body.contains("input") || !body.at("input").is_array()) invalid("input must be an array of arrays of numbers");
   const Json& input = body.at("input");
   if (input.size() != expected.size())
-    invalid("input has " + std::to_string(input.size()) + " vectors, the model takes " + std::to_string(expected.size()));
+    invalid("input has " + std::to_string(input.size()) + " vectors, the model takes " +
+            std::to_string(expected.size()));
   for (std::size_t i = 0; i < expected.size(); ++i) {
     if (!input[i].is_array() || input[i].size() != expected[i])
       invalid("input vector " + std::to_string(i) + " must have " + std::to_string(expected[i]) + " numbers");
@@ -135,7 +138,7 @@ Answer guarded(const std::function<Json()>& action) try {
 } catch (const ProtocolError& e) {
   return error_answer(e);
 } catch (const Refusal& e) {
-  if (e.reason != Reason::bad_request) throw;
+  if (e.reason != Reason::bad_request && e.reason != Reason::quota) throw;
   std::string message = e.what();
   for (const Fault& fault : e.faults) message += "; " + fault.pointer + " " + fault.message;
   return error_answer({"InvalidInput", message});

@@ -144,7 +144,7 @@ void Jobs::check_size(double particles, double steps, std::int64_t realizations)
 }
 
 std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& inputs,
-                                      const std::vector<std::string>& outputs, const Store::Answer& answer) {
+                                      const std::vector<std::string>& outputs, bool raw, const Store::Answer& answer) {
   check_queue(subject);
   const StudyInputs study = read_study_inputs(inputs);
   const Json demand = validate(study.document, "/inputs/case");
@@ -173,7 +173,7 @@ std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& in
   job.max_failed_share = plan.at("max_failed_share").get<double>();
   job.may_stop_early = !plan.at("stop_when_ci_half_width_below_m").is_null();
   job.case_hash = plan.at("case_hash").get<std::string>();
-  job.inputs = dump({{"quantity", study.quantity}, {"outputs", outputs}});
+  job.inputs = dump({{"quantity", study.quantity}, {"outputs", outputs}, {"raw", raw}});
   std::optional<Job> row = store_.create(job, answer);
   if (!row) return row;
   made.keep();
@@ -183,9 +183,9 @@ std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& in
 }
 
 std::optional<Job> Jobs::submit_echo(const std::string& subject, const Json& inputs,
-                                     const std::vector<std::string>& outputs, const Store::Answer& answer) {
+                                     const std::vector<std::string>& outputs, bool raw, const Store::Answer& answer) {
   check_queue(subject);
-  Json kept = {{"outputs", outputs}, {"pause", inputs.value("pause", 0.0)}, {"inputs", inputs}};
+  Json kept = {{"outputs", outputs}, {"raw", raw}, {"pause", inputs.value("pause", 0.0)}, {"inputs", inputs}};
   std::optional<Job> row = store_.create(
       {.id = random_hex(16), .process = "echo", .subject = subject, .title = "echo", .inputs = dump(kept)}, answer);
   if (row) scheduler_.kick();
@@ -202,6 +202,7 @@ void Jobs::dismiss(const Job& job) {
 std::int64_t Jobs::retry(const Job& job, const Store::Answer& answer) {
   if (job.process != "influence-zone" || job.state == JobState::dismissed)
     throw Refusal(Reason::conflict, "this job has no realizations");
+  if (ended(job.state)) check_queue(job.subject);  // it will be open again
   const std::int64_t retried = store_.retry_failed(job.number, answer);
   scheduler_.kick();
   changes_.announce();
@@ -214,7 +215,7 @@ bool Jobs::extend(const Job& job, std::int64_t more, const Store::Answer& answer
   if (job.may_stop_early) throw Refusal(Reason::conflict, "a study that stops by itself cannot be extended");
   const std::lock_guard one_at_a_time(extending_);  // two at once would both add to the same number
   const std::int64_t planned = store_.job(job.id)->planned + more;
-  check_disk();
+  ended(job.state) ? check_queue(job.subject) : check_disk();  // an ended one will be open again
   check_size(job.particles, job.steps, planned);
   const StudyDirectory directory{data_.job(job.id)};
   const Outcome prepared = run(commands_.prepare(directory.resolved_case(), directory, planned, job.seed), seconds(60));

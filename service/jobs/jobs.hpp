@@ -20,12 +20,13 @@ class Jobs {
   Jobs(const Config& config, Store& store, Scheduler& scheduler, Changes& changes);
 
   /// Checks a study with `talus validate`, refuses what is over the quotas, makes its directory and records it.
+  /// @param raw  whether the client wants its results as they are, without a document around them
   /// @return nothing where `answer`'s Idempotency-Key has been used meanwhile
   /// @throws Refusal, StorageError, FileError
   std::optional<Job> submit_study(const std::string& subject, const Json& inputs,
-                                  const std::vector<std::string>& outputs, const Store::Answer& answer);
+                                  const std::vector<std::string>& outputs, bool raw, const Store::Answer& answer);
   std::optional<Job> submit_echo(const std::string& subject, const Json& inputs,
-                                 const std::vector<std::string>& outputs, const Store::Answer& answer);
+                                 const std::vector<std::string>& outputs, bool raw, const Store::Answer& answer);
   void dismiss(const Job& job);
   std::int64_t retry(const Job& job, const Store::Answer& answer);
   bool extend(const Job& job, std::int64_t more, const Store::Answer& answer);

@@ -114,6 +114,8 @@ std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
 }
 
 Json Jobs::evaluate(const Json& document) {
+  const Json demand = validate(document, ""), &particles = demand.at("particles");
+  check_size(particles.at("soil").get<double>() + particles.at("wall").get<double>(), demand.at("steps").get<double>(), 1);
   const Scratch scratch(data_.scratch());
   write_file(scratch.path / "case.json", dump(document));
   const Outcome outcome = run(commands_.median(scratch.path / "case.json", scratch.path / "run"), config_.time_limit, true);

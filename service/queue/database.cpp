@@ -80,7 +80,8 @@ void Database::throw_storage_error(const SQLite::Exception& e) {
       throw StorageError(Kind::busy, "the queue is busy; try again");
     case SQLITE_IOERR:
       // A disk without room for the log shows itself this way too.
-      throw StorageError(Kind::full, std::string("the queue cannot be written, most likely for want of room: ") + e.what());
+      throw StorageError(Kind::full,
+                         std::string("the queue cannot be written, most likely for want of room: ") + e.what());
     default:
       throw StorageError(Kind::other, std::string("the queue: ") + e.what());
   }

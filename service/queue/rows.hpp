@@ -9,7 +9,8 @@ namespace talus::service {
 
 inline constexpr const char* job_columns =
     "number, id, process, subject, title, inputs, state, message, seed, planned, floor, max_failed_share, "
-    "may_stop_early, case_hash, particles, steps, created, updated, started, finished, done, failed, floor_made, version";
+    "may_stop_early, case_hash, particles, steps, created, updated, started, finished, done, failed, floor_made, "
+    "version";
 
 inline constexpr const char* run_columns =
     "job, floor, idx, state, attempt, crashes, influence_zone_m, front_connected_m, front_mass_99_m, front_mass_999_m, "

@@ -19,7 +19,8 @@ class Store {
   /// @throws StorageError
   Store(const std::filesystem::path& path, Clock clock) : db_(path), clock_(std::move(clock)) {}
 
-  // --- jobs -----------------------------------------------------------------------------------------------------------
+  // --- jobs
+  // -----------------------------------------------------------------------------------------------------------
 
   /// Records a job and its runs; durable when this returns.
   /// @param answer  what its owner was told under an Idempotency-Key, in the same transaction: made from the job
@@ -39,7 +40,8 @@ class Store {
   void dismiss(std::int64_t job);
   /// Puts the failed realizations (not the done ones) back into the queue. @return how many
   std::int64_t retry_failed(std::int64_t job, const Answer& answer = {});
-  /// Adds realizations up to `planned` in all. @return false where the key has been used meanwhile
+  /// Adds realizations up to `planned` in all, unless the job has been dismissed. @return false where the key has been
+  /// used meanwhile
   bool extend(std::int64_t job, std::int64_t planned, const Answer& answer = {});
   /// Ends the claiming of a job whose statistics are good enough: its queued realizations are dropped, the leased ones
   /// lose their lease.
@@ -47,7 +49,8 @@ class Store {
 
   std::optional<Remembered> remembered(const std::string& subject, const std::string& key);
 
-  // --- runs, for the scheduler ----------------------------------------------------------------------------------------
+  // --- runs, for the scheduler
+  // ----------------------------------------------------------------------------------------
 
   /// Leases the next run: of the open job with the fewest runs under way; of equals, the one served longest ago.
   std::optional<Claim> claim(Milliseconds lease);
@@ -55,8 +58,8 @@ class Store {
     std::vector<std::size_t> lost;  ///< positions of claims that are not current any more
     std::int64_t requeued = 0;
   };
-  /// Renews the leases of `held` and puts back what nobody has held on to, at one moment: after a jump of the clock every
-  /// other lease looks expired, or, set back, as if it had been given in the future.
+  /// Renews the leases of `held` and puts back what nobody has held on to, at one moment: after a jump of the clock
+  /// every other lease looks expired, or, set back, as if it had been given in the future.
   Beat beat(std::span<const Claim> held, Milliseconds lease);
   /// Each: false, and nothing changes, unless the claim's attempt is the current one.
   bool accept(const Claim& claim, const RunResult& result);
@@ -74,7 +77,8 @@ class Store {
 
   bool is_current(const Claim& claim);
 
-  // --- runs, for readers ----------------------------------------------------------------------------------------------
+  // --- runs, for readers
+  // ----------------------------------------------------------------------------------------------
 
   std::vector<Run> runs(std::int64_t job, const RunFilter& filter);
   std::optional<Run> run(const RunKey& key);

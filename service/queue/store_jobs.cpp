@@ -119,6 +119,11 @@ std::vector<Job> Store::jobs(const JobFilter& filter) {
   std::string where = "1 = 1";
   if (filter.subject) where += " AND subject = ?";
   if (filter.before) where += " AND number < ?";
+  if (filter.created_from) where += " AND created >= ?";
+  if (filter.created_to) where += " AND created <= ?";
+  const std::string duration = "COALESCE(finished, " + std::to_string(clock_()) + ") - started";  // NULL: not started
+  if (filter.least_duration) where += " AND " + duration + " >= ?";
+  if (filter.most_duration) where += " AND " + duration + " <= ?";
   if (!filter.states.empty()) where += " AND state IN (" + placeholders(filter.states.size()) + ")";
   if (!filter.processes.empty()) where += " AND process IN (" + placeholders(filter.processes.size()) + ")";
   return db_.read([&](SQLite::Database& db) {
@@ -126,7 +131,9 @@ std::vector<Job> Store::jobs(const JobFilter& filter) {
                             " ORDER BY number DESC LIMIT ?");
     int i = 1;
     if (filter.subject) query.bind(i++, *filter.subject);
-    if (filter.before) query.bind(i++, *filter.before);
+    for (const auto& bound : {filter.before, filter.created_from, filter.created_to, filter.least_duration,
+                              filter.most_duration})
+      if (bound) query.bind(i++, *bound);
     for (const JobState state : filter.states) query.bind(i++, word(state));
     for (const std::string& process : filter.processes) query.bind(i++, process);
     query.bind(i, filter.limit);
@@ -203,9 +210,10 @@ std::int64_t Store::retry_failed(std::int64_t job, const Answer& answer) {
     update.bind(1, job);
     const std::int64_t changed = update.exec();
     if (changed > 0) {
-      Statement counts(db,
-                       "UPDATE jobs SET failed = 0, floor_made = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND floor = 1 "
-                       "AND state = 'done') WHERE number = ?1");
+      Statement counts(
+          db,
+          "UPDATE jobs SET failed = 0, floor_made = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND floor = 1 "
+          "AND state = 'done') WHERE number = ?1");
       counts.bind(1, job);
       counts.exec();
       reopen(db, job, now);
@@ -220,7 +228,7 @@ bool Store::extend(std::int64_t job, std::int64_t planned, const Answer& answer)
     db_.write([&](SQLite::Database& db) {
       const Milliseconds now = clock_();
       const Job old = *one_job(db, job);
-      if (planned <= old.planned) return;
+      if (planned <= old.planned || old.state == JobState::dismissed) return;
       insert_runs(db, job, false, old.planned, planned, old.floor);
       Statement update(db, "UPDATE jobs SET planned = ? WHERE number = ?");
       update.bind(1, planned);

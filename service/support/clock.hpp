@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace talus::service {
 
@@ -16,5 +18,8 @@ Milliseconds system_now();
 
 /// "2026-01-31T12:00:00.123Z" (RFC 3339)
 std::string utc_text(Milliseconds time);
+
+/// The inverse: any date-time of RFC 3339 5.6, with any offset; fractions are cut to milliseconds.
+std::optional<Milliseconds> utc_time(std::string_view text);
 
 }  // namespace talus::service

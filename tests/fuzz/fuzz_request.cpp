@@ -19,7 +19,8 @@ void check_rewritten(const Head& head) {
   const std::string& text = head.rewritten;
   check(head_end(text) == text.size());
   check(text.find('\0') == std::string::npos);
-  for (const char* forbidden : {"\nRange:", "\nrange:", "\nTransfer-", "\ntransfer-", "\nContent-Type:", "\ncontent-type:", "%0d", "%0A"})
+  for (const char* forbidden :
+       {"\nRange:", "\nrange:", "\nTransfer-", "\ntransfer-", "\nContent-Type:", "\ncontent-type:", "%0d", "%0A"})
     check(text.substr(text.find("\r\n")).find(forbidden) == std::string::npos);
   if (text.find("\r\nhost: ") == std::string::npos) return;  // HTTP/1.0 may come without, what is handed on is 1.1
   check(judge(text, {}).status == 0);

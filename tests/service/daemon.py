@@ -1,7 +1,6 @@
 """A talusd of its own for a test, and how to speak to it; without any package from outside."""
 import http.client
 import json
-import os
 import pathlib
 import re
 import shutil

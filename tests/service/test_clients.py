@@ -4,9 +4,8 @@ import json
 import os
 import subprocess
 import sys
-import time
 
-from daemon import SOURCE, TALUS, Daemon, ServiceTest, case, main, study
+from daemon import TALUS, ServiceTest, case, main, study
 
 
 class Umbridge(ServiceTest):
@@ -39,8 +38,21 @@ class Umbridge(ServiceTest):
         path.write_text(json.dumps(self.case))
         subprocess.run([str(TALUS), "run", str(path), "--out", str(self.dir / "run")], check=True, capture_output=True)
         result = json.loads((self.dir / "run/result.json").read_text())
-        self.assertEqual(output, [[result[key] for key in ("influence_zone_m", "front_connected_m", "front_mass_99_m", "front_mass_999_m",
-                                                           "centre_of_mass_x_m")]])
+        self.assertEqual(
+            output,
+            [
+                [
+                    result[key]
+                    for key in (
+                        "influence_zone_m",
+                        "front_connected_m",
+                        "front_mass_99_m",
+                        "front_mass_999_m",
+                        "centre_of_mass_x_m",
+                    )
+                ]
+            ],
+        )
 
     def test_parameters(self):
         import umbridge
@@ -52,30 +64,62 @@ class Umbridge(ServiceTest):
 
     def test_errors(self):
         def error(path, body, kind):
-            for content_type in ("application/json", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x"):
+            for content_type in (
+                "application/json",
+                "text/plain",
+                "application/x-www-form-urlencoded",
+                "multipart/form-data; boundary=x",
+            ):
                 reply = self.daemon.post(path, json.dumps(body), headers={"Content-Type": content_type})
                 self.assertEqual(reply.status, 400, (path, body, reply.body))
                 self.assertEqual(set(reply.json), {"error"})
                 self.assertEqual(set(reply.json["error"]), {"type", "message"})
                 self.assertEqual(reply.json["error"]["type"], kind, (path, body))
 
-        for path in ("/ModelInfo", "/InputSizes", "/OutputSizes", "/Evaluate", "/Gradient", "/ApplyJacobian", "/ApplyHessian"):
+        for path in (
+            "/ModelInfo",
+            "/InputSizes",
+            "/OutputSizes",
+            "/Evaluate",
+            "/Gradient",
+            "/ApplyJacobian",
+            "/ApplyHessian",
+        ):
             error(path, {"name": "none"}, "ModelNotFound")
             error(path, {}, "ModelNotFound")
             error(path, {"name": "../slope"}, "ModelNotFound")
         for path in ("/Gradient", "/ApplyJacobian", "/ApplyHessian"):
             error(path, {"name": "slope", "input": "nonsense"}, "UnsupportedFeature")
-        for wrong in ({}, {"input": 1}, {"input": [[1.0]]}, {"input": [[0.0] * self.TERMS, []]}, {"input": [["a"] * self.TERMS]},
-                      {"input": [[0.0] * self.TERMS], "config": {"nonsense": 1}}, {"input": [[1e9] * self.TERMS]}):
+        for wrong in (
+            {},
+            {"input": 1},
+            {"input": [[1.0]]},
+            {"input": [[0.0] * self.TERMS, []]},
+            {"input": [["a"] * self.TERMS]},
+            {"input": [[0.0] * self.TERMS], "config": {"nonsense": 1}},
+            {"input": [[1e9] * self.TERMS]},
+        ):
             error("/Evaluate", {"name": "slope", **wrong}, "InvalidInput")
         for body in ("", "{", "[]"):
             self.assertEqual(self.daemon.post("/Evaluate", body).status, 400)
 
+    def test_the_quotas_hold_here_too(self):
+        body = {"name": "slope", "input": [[0.0] * self.TERMS, [1e6]], "config": {"parameters": ["end_s"]}}
+        reply = self.daemon.post("/Evaluate", body)
+        self.assertEqual((reply.status, reply.json["error"]["type"]), (400, "InvalidInput"), reply.body)
+        self.assertIn("steps of a run", reply.json["error"]["message"])
+
     def test_exactly_the_keys_of_the_protocol(self):
         self.assertEqual(self.daemon.get("/Info").json, {"protocolVersion": 1.0, "models": ["slope"]})
         for path, body, expected in (
-                ("/ModelInfo", {}, {"support": {"Evaluate": True, "Gradient": False, "ApplyJacobian": False, "ApplyHessian": False}}),
-                ("/InputSizes", {}, {"inputSizes": [self.TERMS]}), ("/OutputSizes", {"config": {}}, {"outputSizes": [5]})):
+            (
+                "/ModelInfo",
+                {},
+                {"support": {"Evaluate": True, "Gradient": False, "ApplyJacobian": False, "ApplyHessian": False}},
+            ),
+            ("/InputSizes", {}, {"inputSizes": [self.TERMS]}),
+            ("/OutputSizes", {"config": {}}, {"outputSizes": [5]}),
+        ):
             self.assertEqual(self.daemon.post(path, {"name": "slope", **body}).json, expected)
 
 
@@ -111,21 +155,41 @@ class Verbs(ServiceTest):
         document["terrain"]["bed_csv"] = "bed.csv"
         path = self.dir / "case.json"
         path.write_text(json.dumps(document))
-        job = self.talus("submit", path, "--realizations", 5, "--seed", 3, "--set", "study.noise_floor_replicates=0").stdout.strip()
+        job = self.talus(
+            "submit", path, "--realizations", 5, "--seed", 3, "--set", "study.noise_floor_replicates=0"
+        ).stdout.strip()
         watched = self.talus("watch", job)
         self.assertIn("successful  100 %", watched.stderr)
         self.assertIn(job, self.talus("status").stdout)
         self.assertEqual(json.loads(self.talus("status", job, "--json").stdout)["realizations"]["done"], 5)
-        shown = self.talus("results", job, "--out", self.dir / "results.json")
-        self.assertEqual(json.loads((self.dir / "results.json").read_text())["summary"]["value"]["provenance"]["seed"], 3)
+        self.talus("results", job, "--out", self.dir / "results.json")
+        self.assertEqual(
+            json.loads((self.dir / "results.json").read_text())["summary"]["value"]["provenance"]["seed"], 3
+        )
         self.assertIn("influence zone", self.talus("results", job).stdout)
         self.assertIn("dismissed", self.talus("cancel", job).stdout)
         self.talus("watch", job, code=6)
         self.talus("results", job, code=5)
         self.talus("status", "../x", code=3)
         self.talus("status", "0" * 32, code=5)
-        subprocess.run([str(TALUS), "study", str(path), "--realizations", "5", "--seed", "3", "--out", str(self.dir / "local"), "--no-figures",
-                        "--set", "study.noise_floor_replicates=0"], check=True, capture_output=True)
+        subprocess.run(
+            [
+                str(TALUS),
+                "study",
+                str(path),
+                "--realizations",
+                "5",
+                "--seed",
+                "3",
+                "--out",
+                str(self.dir / "local"),
+                "--no-figures",
+                "--set",
+                "study.noise_floor_replicates=0",
+            ],
+            check=True,
+            capture_output=True,
+        )
         remote = json.loads((self.dir / "results.json").read_text())["summary"]["value"]
         local = json.loads((self.dir / "local/study.json").read_text())
         for summary in (remote, local):
@@ -150,16 +214,39 @@ class Schemathesis(ServiceTest):
         self.daemon.wait_for(job)
         self.explore()
         # Again with a job and realizations that are there, so that more than 404 comes back.
-        (self.dir / "schemathesis.toml").write_text(f'[parameters]\n"path.jobID" = "{job}"\n"path.index" = 1\n"path.processID" = "echo"\n')
+        (self.dir / "schemathesis.toml").write_text(
+            f'[parameters]\n"path.jobID" = "{job}"\n"path.index" = 1\n"path.processID" = "echo"\n'
+        )
         self.explore("--exclude-operation-id", "dismiss")
         self.assertIsNone(self.daemon.process.poll())
 
     def explore(self, *options):
         program = os.path.join(os.path.dirname(sys.executable), "schemathesis")
-        done = subprocess.run([program, "run", f"{self.daemon.url}/api", "--phases", "examples,coverage,fuzzing", "--max-examples", "15",
-                               "--checks", "not_a_server_error,status_code_conformance,content_type_conformance,response_schema_conformance",
-                               "--exclude-path-regex", "/events$", "--seed", "1", "--request-timeout", "20", "--no-color", *options],
-                              capture_output=True, text=True, cwd=self.dir, timeout=500)
+        done = subprocess.run(
+            [
+                program,
+                "run",
+                f"{self.daemon.url}/api",
+                "--phases",
+                "examples,coverage,fuzzing",
+                "--max-examples",
+                "15",
+                "--checks",
+                "not_a_server_error,status_code_conformance,content_type_conformance,response_schema_conformance",
+                "--exclude-path-regex",
+                "/events$",
+                "--seed",
+                "1",
+                "--request-timeout",
+                "20",
+                "--no-color",
+                *options,
+            ],
+            capture_output=True,
+            text=True,
+            cwd=self.dir,
+            timeout=500,
+        )
         self.assertEqual(done.returncode, 0, done.stdout[-6000:] + done.stderr[-2000:])
         print(done.stdout[-600:], flush=True)
 

@@ -77,6 +77,8 @@ TEST(Guard, ControlCharactersBareOrHidden) {
   EXPECT_EQ(header_status("Accept: a\nb: c"), 400);
   EXPECT_EQ(header_status("X-Request-Id: a%0d%0aSet-Cookie:%20b"), 400);
   EXPECT_EQ(header_status("Idempotency-Key: a%00"), 400);
+  EXPECT_EQ(header_status("Idempotency-Key: a%u000d%u000aSet-Cookie:%20b"), 400);
+  EXPECT_EQ(header_status("Content-Type: a%0D%0Ab"), 400);
   EXPECT_EQ(header_status("Idempotency-Key: 100%25"), 0);
   EXPECT_EQ(header_status("Referer: a%0d%0a"), 0);  // not handed on
   EXPECT_EQ(of("GET / HTTP/1.1", "Host: a\r\nReferer: a%0d%0a\r\n").rewritten.find("eferer"), std::string::npos);
@@ -93,7 +95,9 @@ TEST(Guard, NoRangeReachesTheLibrary) {
 TEST(Guard, WithoutTokensOnlyLoopbackNamesAndNoOtherSites) {
   GuardLimits local = limits;
   local.loopback_names_only = true;
-  const auto code = [&](const std::string& headers) { return judge("GET / HTTP/1.1\r\n" + headers + "\r\n", local).status; };
+  const auto code = [&](const std::string& headers) {
+    return judge("GET / HTTP/1.1\r\n" + headers + "\r\n", local).status;
+  };
   for (const char* host : {"localhost", "localhost:80", "127.0.0.1:8080", "[::1]:80"})
     EXPECT_EQ(code(std::string("Host: ") + host + "\r\n"), 0) << host;
   for (const char* host : {"evil.example", "127.0.0.1.evil.example", "localhost.evil.example:80", "10.0.0.1"})

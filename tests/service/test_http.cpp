@@ -74,7 +74,8 @@ TEST(Tokens, AreFoundByTheirHash) {
   ASSERT_TRUE(tokens.find("Bearer " + token));
   EXPECT_EQ(tokens.find("Bearer " + token)->subject, "anna");
   EXPECT_EQ(tokens.find("Bearer " + token)->role, Role::submit);
-  for (const std::string& bad : std::vector<std::string>{"", token, "Bearer " + token + " ", "bearer " + token, "Bearer x"})
+  for (const std::string& bad :
+       std::vector<std::string>{"", token, "Bearer " + token + " ", "bearer " + token, "Bearer x"})
     EXPECT_FALSE(tokens.find(bad)) << bad;
 }
 
@@ -120,7 +121,8 @@ TEST(Options, OtherThanLoopbackNeedsTokens) {
 
 TEST(Options, AFileSaysTheSame) {
   const test::TemporaryDirectory directory;
-  std::ofstream(directory / "talusd.conf") << "data = \"/d\"\nworkers = 3\nlisten = \"127.0.0.1:9\"\ntalus = \"/bin/true\"\n";
+  std::ofstream(directory / "talusd.conf")
+      << "data = \"/d\"\nworkers = 3\nlisten = \"127.0.0.1:9\"\ntalus = \"/bin/true\"\n";
   const Options read = options({"--config", directory / "talusd.conf", "--workers", "4"});
   EXPECT_FALSE(read.exit);
   EXPECT_EQ(read.config.data, "/d");

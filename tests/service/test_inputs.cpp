@@ -23,7 +23,8 @@ std::string echo_faults(const char* text) { return pointers([&] { read_echo_inpu
 TEST(StudyInputs, OptionsGoIntoTheStudy) {
   const StudyInputs in = read_study_inputs(Json::parse(
       R"({"case": {"value": {"title": "t", "study": {"seed": 1}}}, "realizations": {"value": 5}, "seed": 7,
-          "noise_floor_replicates": 2, "max_failed_share": 0.5, "histogram_edges_m": [1, 2], "quantity": "front_mass_99_m"})"));
+          "noise_floor_replicates": 2, "max_failed_share": 0.5, "histogram_edges_m": [1, 2],
+          "quantity": "front_mass_99_m"})"));
   EXPECT_EQ(in.document["study"], Json::parse(R"({"seed": 7, "realizations": 5, "noise_floor_replicates": 2,
                                                   "max_failed_share": 0.5, "histogram_edges_m": [1, 2]})"));
   EXPECT_EQ(in.quantity, "front_mass_99_m");
@@ -41,7 +42,8 @@ TEST(StudyInputs, EveryFaultIsTold) {
 }
 
 TEST(StudyInputs, NoFileAndNoLink) {
-  EXPECT_EQ(study_faults(R"({"case": {"terrain": {"bed_csv": "/etc/passwd"}, "slide": {"outlines": [{"outline_csv": "a"}]}}})"),
+  EXPECT_EQ(study_faults(
+                R"({"case": {"terrain": {"bed_csv": "/etc/passwd"}, "slide": {"outlines": [{"outline_csv": "a"}]}}})"),
             "/inputs/case/terrain/bed_csv /inputs/case/slide/outlines/0/outline_csv ");
   EXPECT_EQ(study_faults(R"({"case": {"href": "http://169.254.169.254/"}})"), "/inputs/case/href /inputs/case ");
 }
@@ -55,6 +57,12 @@ TEST(EchoInputs, EveryTypeIsChecked) {
             "/inputs/s /inputs/pause /inputs/a /inputs/b /inputs/o /inputs/m /inputs/x /inputs/y ");
 }
 
+TEST(EchoInputs, AnObjectMayLookLikeAQualifiedValue) {
+  EXPECT_EQ(read_echo_inputs(Json::parse(R"({"s": "a", "o": {"value": "b"}})"))["o"], Json::parse(R"({"value": "b"})"));
+  EXPECT_EQ(read_echo_inputs(Json::parse(R"({"s": "a", "o": {"value": {"k": 1}}})"))["o"], Json::parse(R"({"k": 1})"));
+  EXPECT_EQ(echo_faults(R"({"s": "a", "o": {"href": "http://169.254.169.254/"}})"), "/inputs/o/href ");
+}
+
 TEST(EchoResults, OnlyWhatWasGivenAndWanted) {
   const Json inputs = Json::parse(R"({"s": "a", "pause": 1})");
   EXPECT_EQ(echo_results(inputs, {"s", "x"}), Json::parse(R"({"s": "a"})"));
@@ -66,8 +74,10 @@ TEST(Outputs, AreSelected) {
   EXPECT_EQ(read_outputs(Json::parse(R"({"outputs": {"b": {}}})"), {"a", "b"}, check), (std::vector<std::string>{"b"}));
   EXPECT_EQ(read_outputs(Json::parse("{}"), {"a", "b"}, check).size(), 2u);
   EXPECT_TRUE(check.ok());
-  read_outputs(Json::parse(R"({"outputs": {"c": {}, "a": {"transmissionMode": "reference"}, "b": 1}})"), {"a", "b"}, check);
-  EXPECT_EQ(pointers([&] { check.finish(Reason::bad_request, ""); }), "/outputs/c /outputs/a/transmissionMode /outputs/b ");
+  read_outputs(Json::parse(R"({"outputs": {"c": {}, "a": {"transmissionMode": "reference"}, "b": 1}})"), {"a", "b"},
+               check);
+  EXPECT_EQ(pointers([&] { check.finish(Reason::bad_request, ""); }),
+            "/outputs/c /outputs/a/transmissionMode /outputs/b ");
 }
 
 }  // namespace

@@ -15,7 +15,9 @@ std::string why(const std::string& text) {
   return {};
 }
 
-std::string nested(int depth) { return std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']'); }
+std::string nested(int depth) {
+  return std::string(static_cast<std::size_t>(depth), '[') + std::string(static_cast<std::size_t>(depth), ']');
+}
 std::string text_of(std::size_t bytes) { return '"' + std::string(bytes, 'a') + '"'; }
 
 TEST(RequestJson, NestingUpTo64) {

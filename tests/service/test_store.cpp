@@ -25,11 +25,13 @@ struct StoreTest : testing::Test {
     return std::make_unique<Store>(directory / "queue.sqlite", [this] { return now; });
   }
   Job add(const std::string& id, std::int64_t realizations, std::int64_t floor = 0, const std::string& subject = "a") {
-    return *store->create({.id = id, .process = "influence-zone", .subject = subject, .planned = realizations, .floor = floor});
+    return *store->create(
+        {.id = id, .process = "influence-zone", .subject = subject, .planned = realizations, .floor = floor});
   }
   Job job(const std::string& id) { return *store->job(id); }
   static RunResult result(double zone) {
-    return {.measures = {zone, 1, 2, 3, 4}, .mean_friction_angle_deg = 25, .steps = 9, .wall_clock = 0.5, .digest = "d"};
+    return {
+        .measures = {zone, 1, 2, 3, 4}, .mean_friction_angle_deg = 25, .steps = 9, .wall_clock = 0.5, .digest = "d"};
   }
 };
 
@@ -222,6 +224,15 @@ TEST_F(StoreTest, ExtendingLeavesWhatIsThere) {
   EXPECT_FALSE(store->claim(lease));
 }
 
+TEST_F(StoreTest, ADismissedJobIsNotExtended) {
+  const Job made = add("one", 1);
+  store->dismiss(made.number);
+  store->extend(made.number, 5);
+  EXPECT_EQ(job("one").state, JobState::dismissed);
+  EXPECT_EQ(job("one").planned, 1);
+  EXPECT_FALSE(store->claim(lease));
+}
+
 TEST_F(StoreTest, AKeyIsRememberedWithTheJobOrNeither) {
   const auto answer = [](const Job& j) {
     return Remembered{.subject = "a", .key = "k", .body_hash = "h", .status = 201, .location = "/" + j.id, .body = "b"};
@@ -261,6 +272,39 @@ TEST_F(StoreTest, JobsAreListedNewestFirstByPages) {
   EXPECT_TRUE(store->jobs({.processes = {"echo"}}).empty());
 }
 
+TEST_F(StoreTest, JobsAreListedByTheTimeOfTheirCreation) {
+  for (const char* id : {"1", "2", "3"}) add(id, 1), now += 1000;
+  const auto found = [&](std::optional<Milliseconds> from, std::optional<Milliseconds> to) {
+    std::string ids;
+    for (const Job& j : store->jobs({.created_from = from, .created_to = to})) ids += j.id;
+    return ids;
+  };
+  EXPECT_EQ(found({}, {}), "321");
+  EXPECT_EQ(found(1'001'000, {}), "32");
+  EXPECT_EQ(found({}, 1'001'000), "21");
+  EXPECT_EQ(found(1'001'000, 1'001'000), "2");
+}
+
+TEST_F(StoreTest, JobsAreListedByTheirDuration) {
+  const Job ended = add("ended", 1);
+  store->accept(*store->claim(lease), result(1));
+  now += 3000;
+  store->finish(ended.number, JobState::successful, "");
+  add("running", 1);
+  store->claim(lease);
+  add("accepted", 1);
+  now += 5000;
+  const auto found = [&](std::optional<Milliseconds> least, std::optional<Milliseconds> most) {
+    std::string ids;
+    for (const Job& j : store->jobs({.least_duration = least, .most_duration = most})) ids += j.id + " ";
+    return ids;
+  };
+  EXPECT_EQ(found(0, {}), "running ended ");  // one that has not started has no duration
+  EXPECT_EQ(found(3001, {}), "running ");
+  EXPECT_EQ(found({}, 4999), "ended ");
+  EXPECT_EQ(found(3000, 5000), "running ended ");
+}
+
 TEST_F(StoreTest, RealizationsAreFoundByTheirMeasure) {
   const Job made = add("one", 5);
   for (double zone = 10; const auto claim = store->claim(lease); zone += 1) store->accept(*claim, result(zone));
@@ -287,6 +331,15 @@ TEST_F(StoreTest, AFullDatabaseIsToldAndNothingIsHalfWritten) {
       StorageError);
   EXPECT_FALSE(raw.tableExists("x"));
   EXPECT_TRUE(store->job("one"));
+}
+
+TEST_F(StoreTest, WhatIsCommittedIsOnTheDisk) {
+  Database database(directory / "queue.sqlite");
+  database.write([](SQLite::Database& db) {
+    EXPECT_EQ(db.execAndGet("PRAGMA journal_mode").getString(), "wal");
+    EXPECT_EQ(db.execAndGet("PRAGMA synchronous").getInt(), 2);  // FULL
+    EXPECT_EQ(db.execAndGet("PRAGMA foreign_keys").getInt(), 1);
+  });
 }
 
 TEST_F(StoreTest, ANewerDatabaseIsRefused) {

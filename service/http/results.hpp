@@ -1,0 +1,13 @@
+#pragma once
+// The results of a process in the form that its client asked for.
+
+#include "http/message.hpp"
+
+namespace talus::service {
+
+/// A results document; or, of a request with "response": "raw", the value itself, and of several values a
+/// multipart/related, unless the client accepts JSON alone.
+/// @param values  name to bare value
+Answer results_answer(const Json& values, bool raw, const Incoming& request);
+
+}  // namespace talus::service

@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+"""Full disks, files that cannot be written, clocks that jump, and load."""
+
+import http.client
+import os
+import shutil
+import sqlite3
+import subprocess
+import threading
+import time
+
+from daemon import TALUSD, Daemon, ServiceTest, main, study
+
+
+class BadDays(ServiceTest):
+    """Full disks, files that cannot be written, clocks that jump."""
+
+    def on_small_disk(self, mebibytes):
+        """A file system of its own; skips where mounting is not allowed."""
+        place = self.dir / "disk"
+        place.mkdir()
+        done = subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", f"size={mebibytes}m", "tmpfs", str(place)], capture_output=True, text=True
+        )
+        if done.returncode != 0:
+            self.skipTest("cannot mount a small file system here: " + done.stderr.strip())
+        self.addCleanup(subprocess.run, ["umount", "-l", str(place)], capture_output=True)
+        return place
+
+    def test_a_full_disk(self):
+        place = self.on_small_disk(48)
+        self.daemon = Daemon(place / "data", workers=2)
+        job = self.daemon.submit(study(40, spacing=0.8, end=1.5))
+        while self.daemon.get(f"/jobs/{job}").json["realizations"]["done"] < 3:
+            time.sleep(0.02)
+        statuses = set()
+        for _ in range(10):
+            with open(place / "ballast", "ab", buffering=0) as ballast:
+                try:
+                    while True:
+                        ballast.write(b"x" * 4096)
+                except OSError:
+                    pass
+            statuses.add(self.daemon.post("/processes/influence-zone/execution", study(3)).status)
+            self.assertEqual(self.daemon.get("/healthz").status, 200)
+            time.sleep(0.1)
+        # A run that ends makes room again, so one may get in.
+        self.assertTrue(statuses <= {201, 503, 507} and statuses & {503, 507}, statuses)
+        self.assertEqual(self.daemon.get(f"/jobs/{job}").status, 200)
+        self.assertIsNone(self.daemon.process.poll())
+        (place / "ballast").unlink()
+        info = self.daemon.wait_for(job)
+        self.assertEqual((info["status"], info["realizations"]["done"]), ("successful", 40))
+        self.assertEqual(self.daemon.stop(), 0)
+
+    def test_a_database_that_cannot_be_written(self):
+        """The file turns read-only while talusd runs (chattr +i, which holds for root and for open files too)."""
+        self.start(workers=1)
+        job = self.daemon.submit(study(1))
+        self.daemon.wait_for(job)
+        files = [str(p) for p in self.daemon.data.glob("queue.sqlite*")]
+        done = subprocess.run(["chattr", "+i", *files], capture_output=True, text=True)
+        self.addCleanup(subprocess.run, ["chattr", "-i", *files], capture_output=True)
+        if done.returncode != 0:
+            self.skipTest("no chattr +i here: " + done.stderr.strip())
+        echo = {"inputs": {"s": "a"}}
+        reply = self.daemon.post("/processes/echo/execution", echo, headers={"Prefer": "respond-async"})
+        document = self.problem(reply, reply.status)
+        self.assertIn(reply.status, (503, 507))
+        self.assertIn("cannot be written", document["detail"])
+        self.assertEqual(self.daemon.get(f"/jobs/{job}").status, 200)
+        self.assertIsNone(self.daemon.process.poll())
+        subprocess.run(["chattr", "-i", *files], check=True)
+        self.assertEqual(
+            self.daemon.post("/processes/echo/execution", echo, headers={"Prefer": "respond-async"}).status, 201
+        )
+
+    def test_a_data_directory_of_someone_else(self):
+        data = self.dir / "data"
+        self.start()
+        self.daemon.stop()
+        if os.getuid() != 0 or not shutil.which("setpriv"):
+            self.skipTest("needs root and setpriv to become somebody else")
+        for path in (self.dir, data, *data.iterdir()):
+            path.chmod(0o755 if path.is_dir() else 0o644)
+        done = subprocess.run(
+            ["setpriv", "--reuid=65534", "--clear-groups", TALUSD, "--data", str(data), "--listen", "127.0.0.1:0"],
+            capture_output=True,
+            text=True,
+            timeout=20,
+        )
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertIn(str(data), done.stderr)
+
+    def test_a_database_that_is_none_of_ours(self):
+        data = self.dir / "data"
+        self.start()
+        self.daemon.stop()
+        connection = sqlite3.connect(data / "queue.sqlite")
+        connection.execute("PRAGMA user_version = 99")
+        connection.commit()
+        connection.close()
+        refused = Daemon(data, wait=False)
+        self.assertEqual(refused.process.wait(10), 5)
+        self.assertIn("newer", refused.said())
+        refused.close()
+        (data / "queue.sqlite").write_bytes(b"this is no database" * 100)
+        refused = Daemon(data, wait=False)
+        self.assertEqual(refused.process.wait(10), 5)
+        self.assertIn("talusd:", refused.said())
+        refused.close()
+
+    def test_the_clock_jumps(self):
+        """With a clock of its own that a file shifts: an hour ahead, then back by two."""
+        source = self.dir / "clock.c"
+        source.write_text('''
+            #define _GNU_SOURCE
+            #include <dlfcn.h>
+            #include <stdio.h>
+            #include <stdlib.h>
+            #include <time.h>
+            int clock_gettime(clockid_t id, struct timespec *t) {
+              static int (*real)(clockid_t, struct timespec *);
+              if (!real) real = (int (*)(clockid_t, struct timespec *))dlsym(RTLD_NEXT, "clock_gettime");
+              int result = real(id, t);
+              if (id != CLOCK_REALTIME) return result;
+              FILE *f = fopen(getenv("CLOCK_SHIFT"), "r");
+              long shift = 0;
+              if (f) { if (fscanf(f, "%ld", &shift) != 1) shift = 0; fclose(f); }
+              t->tv_sec += shift;
+              return result;
+            }''')
+        library = self.dir / "clock.so"
+        done = subprocess.run(
+            ["cc", "-shared", "-fPIC", "-o", str(library), str(source), "-ldl"], capture_output=True, text=True
+        )
+        if done.returncode != 0:
+            self.skipTest("no C compiler: " + done.stderr)
+        shift = self.dir / "shift"  # replaced by rename, so that it is never empty
+        shift.write_text("0")
+        self.start("--lease", 3, environment=dict(os.environ, LD_PRELOAD=str(library), CLOCK_SHIFT=str(shift)))
+        job = self.daemon.submit(study(30, spacing=0.5, end=1.0))
+        for value in (3600, -3600, 86400, 0):
+            time.sleep(0.7)
+            (self.dir / "next").write_text(str(value))
+            (self.dir / "next").rename(shift)
+        info = self.daemon.wait_for(job)
+        self.assertEqual(info["realizations"], {"planned": 30, "done": 30, "failed": 0})
+        attempts = [self.daemon.get(f"/jobs/{job}/realizations/{i}").json["attempt"] for i in range(30)]
+        self.assertEqual(set(attempts), {1}, "a jump of the clock took a lease from a worker that was alive")
+
+
+class Load(ServiceTest):
+    """Reads while a study runs: no error; the times are printed."""
+
+    def test_reads_while_a_study_runs(self):
+        self.start()
+        job = self.daemon.submit(study(2000, spacing=0.8, end=1.5))
+        self.daemon.wait_for(job, ("running",))
+        times, errors = [], []
+
+        def read(seconds):
+            connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=20)
+            end = time.monotonic() + seconds
+            while time.monotonic() < end:
+                begin = time.monotonic()
+                try:
+                    connection.request("GET", f"/jobs/{job}")
+                    answer = connection.getresponse()
+                    answer.read()
+                    if answer.status != 200:
+                        errors.append(answer.status)
+                except OSError as e:
+                    errors.append(e)
+                    connection.close()
+                times.append(time.monotonic() - begin)
+
+        threads = [threading.Thread(target=read, args=(4,)) for _ in range(8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        times.sort()
+        p = lambda share: 1000 * times[int(share * (len(times) - 1))]
+        print(
+            f"\n{len(times) / 4:.0f} reads a second beside a running study: p50 {p(0.5):.1f} ms, p99 {p(0.99):.1f} ms, "
+            f"slowest {p(1):.1f} ms",
+            flush=True,
+        )
+        self.assertEqual(errors, [])
+        self.assertGreater(self.daemon.get(f"/jobs/{job}").json["realizations"]["done"], 0)
+
+
+if __name__ == "__main__":
+    main({"BadDays": BadDays, "Load": Load})
