@@ -38,7 +38,8 @@ Json processes(const Exchange& exchange) {
   const Incoming& request = exchange.request;
   const std::int64_t limit = whole_number(request, "limit", 1, 10'000).value_or(10);
   const std::int64_t first = whole_number(request, "offset", 0, 10'000).value_or(0);
-  Json list = Json::array(), links = {link(exchange, "/processes" + query_text(request), "self", "Processes")};
+  Json list = Json::array(),
+       links = Json::array({link(exchange, "/processes" + query_text(request), "self", "Processes")});
   std::int64_t i = 0;
   for (const auto& [name, text] : process_texts()) {
     if (i++ < first) continue;

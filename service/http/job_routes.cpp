@@ -69,7 +69,8 @@ Answer list(Exchange& exchange, Service& service) {
   std::vector<Job> jobs = service.store.jobs(filter);
   const bool more = jobs.size() > limit;
   if (more) jobs.resize(limit);
-  Json all = Json::array(), links = {link(exchange, "/jobs" + query_text(exchange.request), "self", "Jobs")};
+  Json all = Json::array(),
+       links = Json::array({link(exchange, "/jobs" + query_text(exchange.request), "self", "Jobs")});
   for (const Job& job : jobs) all.push_back(status_info(job, exchange));
   if (more) {
     const std::string next = query_text(exchange.request, {{"after", std::to_string(jobs.back().number)}});

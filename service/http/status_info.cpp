@@ -20,7 +20,7 @@ std::string message(const Job& job) {
 
 Json links(const Job& job, const Exchange& exchange) {
   const std::string path = "/jobs/" + job.id;
-  Json all = {link(exchange, path, "self", "This job")};
+  Json all = Json::array({link(exchange, path, "self", "This job")});  // a bare {link} is an object for some compilers
   if (!ended(job.state)) all.push_back(link(exchange, path, "monitor", "How it is getting on"));
   if (job.state == JobState::successful)
     all.push_back(link(exchange, path + "/results", "http://www.opengis.net/def/rel/ogc/1.0/results", "Results"));

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """What is beneath a job; workers that break, and quotas."""
 import json
+import os
 import signal
 import subprocess
 import threading
@@ -90,13 +91,14 @@ class Ours(ServiceTest):
         self.problem(self.daemon.get(path + "/field?format=png"), 400)
 
     def test_only_the_latest_profiles_are_kept(self):
-        job = self.daemon.submit(study(18))
+        job = self.daemon.submit(study(1))
         self.daemon.wait_for(job)
-        for i in range(18):
-            self.assertEqual(self.daemon.get(f"/jobs/{job}/realizations/{i}/profile").status, 200)
-        kept = {p.name for p in (self.daemon.data / "jobs" / job / "profiles").iterdir()}
-        self.assertEqual(len(kept), 16)
-        self.assertIn("17.json", kept)
+        directory = self.daemon.data / "jobs" / job / "profiles"
+        for i in range(1, 19):  # asked for earlier, the last one first
+            (directory / f"{i}.json").write_text("{}")
+            os.utime(directory / f"{i}.json", (10**9 - i, 10**9 - i))
+        self.assertEqual(self.daemon.get(f"/jobs/{job}/realizations/0/profile").status, 200)
+        self.assertEqual({p.name for p in directory.iterdir()}, {f"{i}.json" for i in range(16)})
 
     def test_extending_leaves_old_runs_untouched(self):
         job = self.daemon.submit(study(4))
@@ -171,13 +173,15 @@ class Ours(ServiceTest):
         self.assertEqual(self.daemon.get("/jobs", headers={"If-None-Match": tag}).status, 200)
 
     def test_events_tell_until_the_end(self):
-        job = self.daemon.submit(study(20))
+        job = self.daemon.submit(study(20, noise_floor_replicates=0))
         reply = self.daemon.get(f"/jobs/{job}/events")
         self.assertEqual(reply.headers["Content-Type"], "text/event-stream")
         events = [json.loads(line[6:]) for line in reply.body.decode().splitlines() if line.startswith("data: ")]
         self.assertEqual(events[-1]["status"], "successful")
         progress = [event["progress"] for event in events]
         self.assertEqual(progress, sorted(progress))
+        expected = [min(99, 5 * event["realizations"]["done"]) for event in events[:-1]]
+        self.assertEqual(progress, [*expected, 100])
         info = self.daemon.get(f"/jobs/{job}/events?wait=5&since=0").json
         self.assertEqual(info["status"], "successful")
 
@@ -259,6 +263,7 @@ class Queue(ServiceTest):
         self.assertTrue(
             self.daemon.get(f"/jobs/{job}/results").json["summary"]["value"]["realizations"]["stopped_early"]
         )
+        self.problem(self.daemon.post(f"/jobs/{job}/extend", {"realizations": 1}), 409)
 
     def test_quotas_are_refused_with_numbers(self):
         self.start(

@@ -200,7 +200,7 @@ class Ogc(ServiceTest):
             self.problem(self.daemon.get("/jobs?" + query), 400)
 
     def test_dismissing(self):
-        job = self.daemon.submit(study(200, spacing=0.5, end=3))
+        job = self.daemon.submit(study(200, spacing=0.2, end=9))  # runs that would take much longer than we wait
         self.daemon.wait_for(job, ("running",))
         reply = self.daemon.request("DELETE", f"/jobs/{job}")
         self.assertEqual((reply.status, reply.json["status"]), (200, "dismissed"))

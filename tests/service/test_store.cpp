@@ -333,6 +333,17 @@ TEST_F(StoreTest, AFullDatabaseIsToldAndNothingIsHalfWritten) {
   EXPECT_TRUE(store->job("one"));
 }
 
+TEST_F(StoreTest, AFileThatCannotBeWrittenIsToldAsSuch) {
+  Database database(directory / "queue.sqlite");
+  database.write([](SQLite::Database& db) { db.exec("PRAGMA query_only = ON"); });
+  try {
+    database.write([](SQLite::Database& db) { db.exec("CREATE TABLE x (a TEXT)"); });
+    ADD_FAILURE() << "it was written";
+  } catch (const StorageError& e) {
+    EXPECT_EQ(e.kind, StorageError::Kind::read_only);
+  }
+}
+
 TEST_F(StoreTest, WhatIsCommittedIsOnTheDisk) {
   Database database(directory / "queue.sqlite");
   database.write([](SQLite::Database& db) {
