@@ -1,6 +1,7 @@
 """A talusd of its own for a test, and how to speak to it; without any package from outside."""
 import http.client
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -13,8 +14,8 @@ import time
 import unittest
 
 TALUSD, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
-TALUS = pathlib.Path(TALUSD).with_name("talus")
-SANITIZED = "dev" in pathlib.Path(TALUSD).parts
+TALUS = pathlib.Path(os.environ.get("TALUS") or pathlib.Path(TALUSD).with_name("talus"))
+SANITIZED = not {"dev", "tsan"}.isdisjoint(pathlib.Path(TALUSD).parts)
 
 
 def case(spacing=1.0, end=0.5, **changes):
@@ -44,6 +45,7 @@ class Daemon:
         memory = ["--memory", "-1"] if SANITIZED else []
         self.process = subprocess.Popen(
             [TALUSD, "--data", str(data), "--listen", "127.0.0.1:0", "--workers", str(workers), *memory,
+             *([] if "--talus" in options else ["--talus", str(TALUS)]),
              *([] if "--min-disk" in options else ["--min-disk", "0"]),
              *map(str, options)], stdout=subprocess.PIPE, stderr=self.log, text=True, env=environment)
         if wait:
@@ -148,6 +150,10 @@ class ServiceTest(unittest.TestCase):
     def tearDown(self):
         if self.daemon and self.daemon.process.poll() is None:
             self.daemon.kill()
+        log = self.dir / "talusd.log"
+        if log.exists():
+            said = log.read_text(errors="replace")
+            self.assertNotIn("Sanitizer", said, said[said.find("Sanitizer") - 100 :][:5000])
 
     def start(self, *options, workers=None, **more):
         self.daemon = Daemon(self.dir / "data", *self.options, *options, workers=workers or self.workers, **more)
