@@ -63,6 +63,7 @@ Incoming incoming(const httplib::Request& request) {
 void fill(httplib::Response& response, Answer answer) {
   response.status = answer.status;
   response.set_header("X-Content-Type-Options", "nosniff");
+  response.set_header("Accept-Ranges", "none");  // the library claims "bytes" for HEAD
   for (const auto& [name, value] : answer.headers) response.set_header(name, value);
   if (answer.stream) {
     response.set_header("Cache-Control", "no-store");

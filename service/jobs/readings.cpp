@@ -30,6 +30,16 @@ void prune(const fs::path& directory, std::size_t keep) {
                                       (outcome.err.find("gnuplot") != std::string::npos ? ": gnuplot is missing here" : ""));
 }
 
+/// Leaves out what has no value: `talus` says null.
+void drop_nulls(Json& object) {
+  const auto has_null = [](const Json& value) {
+    return value.is_null() || (value.is_array() && std::any_of(value.begin(), value.end(), [](const Json& item) {
+                                 return item.is_null();
+                               }));
+  };
+  for (auto at = object.begin(); at != object.end();) at = has_null(*at) ? object.erase(at) : std::next(at);
+}
+
 /// A directory for one command, gone afterwards.
 struct Scratch {
   explicit Scratch(const fs::path& parent) : path(parent / random_hex(8)) { fs::create_directories(path); }
@@ -55,6 +65,7 @@ Json Jobs::distribution(const Job& job, int quantity, std::optional<int> bins, c
   const Outcome outcome = run(commands_.distribution({data_.job(job.id)}, quantity, bins, edges), seconds(60));
   if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the histogram");
   Json answer = Json::parse(outcome.out);
+  drop_nulls(answer);
   const std::lock_guard lock(cache_lock_);
   cache_.emplace_front(key, answer);
   if (cache_.size() > cached) cache_.pop_back();

@@ -171,6 +171,7 @@ class Ogc(ServiceTest):
         reply = self.daemon.request("HEAD", "/processes")
         self.assertEqual((reply.status, reply.body), (200, b""))
         self.assertGreater(int(reply.headers["Content-Length"]), 100)
+        self.assertEqual(reply.headers["Accept-Ranges"], "none")
         reply = self.daemon.request("OPTIONS", "/jobs")
         self.assertEqual((reply.status, reply.headers["Allow"]), (204, "GET, HEAD, OPTIONS"))
         for method in ("POST", "PUT", "PATCH", "DELETE", "TRACE"):
@@ -178,6 +179,22 @@ class Ogc(ServiceTest):
             self.problem(reply, 405)
             self.assertEqual(reply.headers["Allow"], "GET, HEAD, OPTIONS", method)
         self.problem(self.daemon.get("/nothing"), 404)
+
+    def test_what_has_no_value_is_left_out(self):
+        def assert_no_null(value, where):
+            self.assertIsNotNone(value, where)
+            if isinstance(value, (dict, list)):
+                for key, member in value.items() if isinstance(value, dict) else enumerate(value):
+                    assert_no_null(member, f"{where} {key}")
+
+        job = self.daemon.submit(study(1, noise_floor_replicates=0))
+        path = f"/jobs/{job}"
+        for _ in ("before", "after"):
+            for where in ("/", "/processes", "/processes/echo", "/jobs", path, path + "/histogram", path + "/histogram?bins=2",
+                          path + "/realizations", path + "/realizations/0", path + "/events?wait=0"):
+                assert_no_null(self.daemon.get(where).json, where)
+            self.daemon.wait_for(job)
+        self.assertNotIn("noise_floor_stdev", self.daemon.get(path + "/histogram").json)
 
     def test_job_list_by_pages_and_filters(self):
         jobs = []
