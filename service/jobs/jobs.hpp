@@ -10,6 +10,7 @@
 #include "jobs/changes.hpp"
 #include "jobs/commands.hpp"
 #include "jobs/inputs.hpp"
+#include "jobs/latest_answers.hpp"
 #include "jobs/scheduler.hpp"
 #include "queue/store.hpp"
 
@@ -66,8 +67,7 @@ class Jobs {
   std::counting_semaphore<1024> heavy_;   ///< runs outside the queue at a time
   std::atomic<bool> stopping_{false};
   std::mutex extending_;
-  std::mutex cache_lock_;
-  std::list<std::pair<std::string, Json>> cache_;  ///< distributions asked for lately, newest first
+  LatestAnswers distributions_;
 };
 
 }  // namespace talus::service

@@ -10,9 +10,10 @@ namespace talus::service {
 namespace {
 
 namespace fs = std::filesystem;
+using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr std::size_t cached = 64;
+constexpr milliseconds behind{1000};  ///< that the histogram of a running job may be
 constexpr std::size_t profiles_kept = 16;  ///< of a job
 constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
@@ -55,21 +56,15 @@ struct Scratch {
 }  // namespace
 
 Json Jobs::distribution(const Job& job, int quantity, std::optional<int> bins, const std::vector<double>& edges) {
-  const std::string key = job.id + "/" + std::to_string(job.version) + "/" + std::to_string(quantity) + "/" +
-                          std::to_string(bins.value_or(0)) + "/" + Json(edges).dump();
-  {
-    const std::lock_guard lock(cache_lock_);
-    const auto at = std::find_if(cache_.begin(), cache_.end(), [&](const auto& entry) { return entry.first == key; });
-    if (at != cache_.end()) return at->second;
-  }
-  const Outcome outcome = run(commands_.distribution({data_.job(job.id)}, quantity, bins, edges), seconds(60));
-  if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the histogram");
-  Json answer = Json::parse(outcome.out);
-  drop_nulls(answer);
-  const std::lock_guard lock(cache_lock_);
-  cache_.emplace_front(key, answer);
-  if (cache_.size() > cached) cache_.pop_back();
-  return answer;
+  const std::string key = job.id + "/" + std::to_string(quantity) + "/" + std::to_string(bins.value_or(0)) + "/" +
+                          Json(edges).dump();
+  return distributions_.get(key, job.version, ended(job.state) ? milliseconds(0) : behind, [&] {
+    const Outcome outcome = run(commands_.distribution({data_.job(job.id)}, quantity, bins, edges), seconds(60));
+    if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the histogram");
+    Json answer = Json::parse(outcome.out);
+    drop_nulls(answer);
+    return answer;
+  });
 }
 
 Json Jobs::summary(const Job& job) const {

@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
-"""Full disks, files that cannot be written, clocks that jump, and load."""
+"""Full disks, files that cannot be written, clocks that jump."""
 
-import http.client
 import os
 import shutil
 import sqlite3
 import subprocess
-import threading
 import time
 
 from daemon import TALUSD, Daemon, ServiceTest, main, study
@@ -150,46 +148,5 @@ class BadDays(ServiceTest):
         self.assertEqual(set(attempts), {1}, "a jump of the clock took a lease from a worker that was alive")
 
 
-class Load(ServiceTest):
-    """Reads while a study runs: no error; the times are printed."""
-
-    def test_reads_while_a_study_runs(self):
-        self.start()
-        job = self.daemon.submit(study(2000, spacing=0.8, end=1.5))
-        self.daemon.wait_for(job, ("running",))
-        times, errors = [], []
-
-        def read(seconds):
-            connection = http.client.HTTPConnection("127.0.0.1", self.daemon.port, timeout=20)
-            end = time.monotonic() + seconds
-            while time.monotonic() < end:
-                begin = time.monotonic()
-                try:
-                    connection.request("GET", f"/jobs/{job}")
-                    answer = connection.getresponse()
-                    answer.read()
-                    if answer.status != 200:
-                        errors.append(answer.status)
-                except OSError as e:
-                    errors.append(e)
-                    connection.close()
-                times.append(time.monotonic() - begin)
-
-        threads = [threading.Thread(target=read, args=(4,)) for _ in range(8)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        times.sort()
-        p = lambda share: 1000 * times[int(share * (len(times) - 1))]
-        print(
-            f"\n{len(times) / 4:.0f} reads a second beside a running study: p50 {p(0.5):.1f} ms, p99 {p(0.99):.1f} ms, "
-            f"slowest {p(1):.1f} ms",
-            flush=True,
-        )
-        self.assertEqual(errors, [])
-        self.assertGreater(self.daemon.get(f"/jobs/{job}").json["realizations"]["done"], 0)
-
-
 if __name__ == "__main__":
-    main({"BadDays": BadDays, "Load": Load})
+    main({"BadDays": BadDays})

@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 
-from daemon import TALUS, ServiceTest, case, main, study
+from daemon import TALUS, TALUSD, ServiceTest, case, main, study
 
 
 class Umbridge(ServiceTest):
@@ -203,6 +203,18 @@ class Verbs(ServiceTest):
         self.assertIn("at most 2", self.talus("submit", path, "--realizations", 5, code=3).stderr)
         self.assertIn("cannot reach", self.talus("status", "--server", "http://127.0.0.1:1", code=5).stderr)
         self.assertIn("not a URL", self.talus("status", "--server", "nonsense://x y", code=3).stderr)
+
+    def test_tokens(self):
+        made = subprocess.run([TALUSD, "--new-token", "submit", "anna"], capture_output=True, text=True, check=True)
+        token, line = (text.split(": ", 1)[1] for text in made.stdout.splitlines())
+        (self.dir / "tokens").write_text(line + "\n")
+        (self.dir / "token").write_text(token + "\n")
+        self.start("--tokens", self.dir / "tokens")
+        self.assertIn("token", self.talus("status", code=5).stderr)
+        self.assertIn("token", self.talus("status", code=5, TALUS_TOKEN="wrong").stderr)
+        for more, environment in ((["--token-file", self.dir / "token"], {}), ([], {"TALUS_TOKEN": token})):
+            done = self.talus("status", *more, **environment)
+            self.assertNotIn(token, done.stdout + done.stderr)
 
 
 class Schemathesis(ServiceTest):

@@ -190,8 +190,18 @@ class Ogc(ServiceTest):
         job = self.daemon.submit(study(1, noise_floor_replicates=0))
         path = f"/jobs/{job}"
         for _ in ("before", "after"):
-            for where in ("/", "/processes", "/processes/echo", "/jobs", path, path + "/histogram", path + "/histogram?bins=2",
-                          path + "/realizations", path + "/realizations/0", path + "/events?wait=0"):
+            for where in (
+                "/",
+                "/processes",
+                "/processes/echo",
+                "/jobs",
+                path,
+                path + "/histogram",
+                path + "/histogram?bins=2",
+                path + "/realizations",
+                path + "/realizations/0",
+                path + "/events?wait=0",
+            ):
                 assert_no_null(self.daemon.get(where).json, where)
             self.daemon.wait_for(job)
         self.assertNotIn("noise_floor_stdev", self.daemon.get(path + "/histogram").json)

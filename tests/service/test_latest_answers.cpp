@@ -1,0 +1,62 @@
+#include "jobs/latest_answers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+namespace talus::service {
+namespace {
+
+using std::chrono::hours;
+using std::chrono::milliseconds;
+
+struct LatestAnswersTest : testing::Test {
+  LatestAnswers answers;
+  std::atomic<int> made{0};
+
+  Json get(const std::string& key, std::int64_t version, milliseconds max_age = {}) {
+    return answers.get(key, version, max_age, [&] { return Json(++made); });
+  }
+};
+
+TEST_F(LatestAnswersTest, TheSameVersionIsMadeOnce) {
+  EXPECT_EQ(get("a", 0), 1);
+  EXPECT_EQ(get("a", 0), 1);
+  EXPECT_EQ(get("b", 0), 2);
+  EXPECT_EQ(get("a", 1), 3);
+}
+
+TEST_F(LatestAnswersTest, AYoungOneOfAnotherVersionWillDo) {
+  EXPECT_EQ(get("a", 0, hours(1)), 1);
+  EXPECT_EQ(get("a", 1, hours(1)), 1);
+  EXPECT_EQ(get("a", 1, milliseconds(0)), 2);
+}
+
+TEST_F(LatestAnswersTest, WhoAskTogetherWaitForOne) {
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 8; ++i)
+    threads.emplace_back([&] {
+      const Json answer = answers.get("a", 7, {}, [&] {
+        std::this_thread::sleep_for(milliseconds(20));
+        return Json(++made);
+      });
+      EXPECT_EQ(answer, 1);
+    });
+  for (std::thread& thread : threads) thread.join();
+}
+
+TEST_F(LatestAnswersTest, AfterAFailureTheNextOneTriesAgain) {
+  EXPECT_THROW(answers.get("a", 0, hours(1), []() -> Json { throw std::runtime_error("x"); }), std::runtime_error);
+  EXPECT_EQ(get("a", 0, hours(1)), 1);
+}
+
+TEST_F(LatestAnswersTest, TheOldestAreForgotten) {
+  for (int i = 0; i < 65; ++i) get(std::to_string(i), 0);
+  EXPECT_EQ(get("1", 0), 2);
+  EXPECT_EQ(get("0", 0), 66);
+}
+
+}  // namespace
+}  // namespace talus::service
