@@ -2,7 +2,6 @@
 // What can be done with jobs; the HTTP side calls nothing else.
 
 #include <atomic>
-#include <list>
 #include <map>
 #include <mutex>
 #include <semaphore>
