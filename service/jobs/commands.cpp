@@ -1,6 +1,7 @@
 #include "jobs/commands.hpp"
 
 #include <charconv>
+#include <cstdlib>
 
 namespace talus::service {
 namespace {
@@ -14,11 +15,21 @@ std::string number(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
+/// Nothing of ours but what a run needs; the last few decide only how it computes or reports.
+std::vector<std::string> environment(int threads) {
+  std::vector<std::string> all = {"PATH=/usr/local/bin:/usr/bin:/bin", "LANG=C.UTF-8", "TZ=UTC",
+                                  "OMP_NUM_THREADS=" + std::to_string(threads), "OMP_WAIT_POLICY=passive"};
+  for (const char* name : {"TALUS_SIMD", "ASAN_OPTIONS", "UBSAN_OPTIONS", "TSAN_OPTIONS"})
+    if (const char* value = std::getenv(name)) all.push_back(std::string(name) + "=" + value);
+  return all;
+}
+
 }  // namespace
 
 Command Commands::quick(std::vector<std::string> arguments) const {
   arguments.insert(arguments.begin(), config_.program.string());
-  Command command{.arguments = std::move(arguments)};
+  Command command{.arguments = std::move(arguments), .environment = environment(1)};
+  command.limits.core_dumps = false;
   if (config_.memory_bytes != 1) command.limits.memory_bytes = quick_memory;
   command.limits.cpu_seconds = 120;
   command.limits.file_bytes = config_.file_bytes;
@@ -34,7 +45,19 @@ Limits Commands::run_limits(double particles) const {
   limits.cpu_seconds =
       static_cast<std::uint64_t>(config_.time_limit.count()) * static_cast<std::uint64_t>(config_.threads) + 60;
   limits.file_bytes = config_.file_bytes;
+  limits.wall_seconds = static_cast<std::uint64_t>(config_.time_limit.count());
+  limits.core_dumps = false;
   return limits;
+}
+
+/// A run outside the queue.
+Command Commands::heavy(std::vector<std::string> arguments) const {
+  Command command = quick(std::move(arguments));
+  command.limits = run_limits(0.0);
+  command.limits.memory_bytes = config_.memory_bytes > 1 ? config_.memory_bytes : 0;
+  command.environment = environment(config_.threads);
+  command.niceness = config_.niceness;
+  return command;
 }
 
 Command Commands::validate(const std::filesystem::path& case_file) const {
@@ -47,40 +70,29 @@ Command Commands::prepare(const std::filesystem::path& case_file, const StudyDir
                 std::to_string(realizations), "--seed", std::to_string(seed), "--prepare"});
 }
 
-Command Commands::run(const StudyDirectory& study, const Claim& claim, bool resume, double particles) const {
+Command Commands::run(const StudyDirectory& study, const Claim& claim, double particles) const {
   Command command{.arguments = {config_.program.string(), "run", study.resolved_case().string(), "--realization",
                                 std::to_string(claim.run.floor ? 0 : claim.run.index), "--seed",
                                 std::to_string(claim.seed), "--threads", std::to_string(config_.threads), "--out",
                                 study.work(claim.run).string(), "--study-worker"},
-                  .threads = config_.threads,
+                  .environment = environment(config_.threads),
                   .limits = run_limits(particles),
                   .niceness = config_.niceness};
   if (claim.run.floor)
     command.arguments.insert(command.arguments.end(), {"--perturbation", perturbation(claim.run.index)});
-  if (resume) command.arguments.emplace_back("--resume");
   return command;
 }
 
 Command Commands::replay(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
                          const std::filesystem::path& out) const {
-  Command command = quick({"run", study.resolved_case().string(), "--realization", std::to_string(run.index), "--seed",
-                           std::to_string(seed), "--threads", std::to_string(config_.threads), "--out", out.string(),
-                           "--study-worker"});
-  command.limits = run_limits(0.0);
-  command.limits.memory_bytes = config_.memory_bytes > 1 ? config_.memory_bytes : 0;
-  command.threads = config_.threads;
-  command.niceness = config_.niceness;
-  return command;
+  return heavy({"run", study.resolved_case().string(), "--realization", std::to_string(run.index), "--seed",
+                std::to_string(seed), "--threads", std::to_string(config_.threads), "--out", out.string(),
+                "--study-worker"});
 }
 
 Command Commands::median(const std::filesystem::path& case_file, const std::filesystem::path& out) const {
-  Command command = quick({"run", case_file.string(), "--seed", "0", "--threads", std::to_string(config_.threads),
-                           "--out", out.string(), "--study-worker"});
-  command.limits = run_limits(0.0);
-  command.limits.memory_bytes = config_.memory_bytes > 1 ? config_.memory_bytes : 0;
-  command.threads = config_.threads;
-  command.niceness = config_.niceness;
-  return command;
+  return heavy({"run", case_file.string(), "--seed", "0", "--threads", std::to_string(config_.threads), "--out",
+                out.string(), "--study-worker"});
 }
 
 Command Commands::stats(const StudyDirectory& study) const {

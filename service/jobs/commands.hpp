@@ -8,9 +8,12 @@
 
 #include "jobs/config.hpp"
 #include "jobs/study_directory.hpp"
-#include "process/child.hpp"
+#include "executor/process.hpp"
 
 namespace talus::service {
+
+using executor::Command;
+using executor::Limits;
 
 class Commands {
  public:
@@ -21,7 +24,7 @@ class Commands {
   Command prepare(const std::filesystem::path& case_file, const StudyDirectory& study, std::int64_t realizations,
                   std::int64_t seed) const;
   /// @param particles  of the case: the memory limit follows from them
-  Command run(const StudyDirectory& study, const Claim& claim, bool resume, double particles) const;
+  Command run(const StudyDirectory& study, const Claim& claim, double particles) const;
   /// The same realization into another directory, with its snapshots.
   Command replay(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
                  const std::filesystem::path& out) const;
@@ -38,6 +41,7 @@ class Commands {
 
  private:
   Command quick(std::vector<std::string> arguments) const;
+  Command heavy(std::vector<std::string> arguments) const;
   Limits run_limits(double particles) const;
   const Config& config_;
 };

@@ -11,6 +11,7 @@
 #include "jobs/inputs.hpp"
 #include "jobs/latest_answers.hpp"
 #include "jobs/scheduler.hpp"
+#include "process/short_command.hpp"
 #include "queue/store.hpp"
 
 namespace talus::service {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "executor/local.hpp"
 #include "support/files.hpp"
 #include "support/log.hpp"
 
@@ -26,7 +27,8 @@ Scheduler::Scheduler(const Config& config, Store& store, Changes& changes)
       store_(store),
       changes_(changes),
       commands_(config),
-      lease_(std::chrono::duration_cast<milliseconds>(config.lease).count()) {}
+      lease_(std::chrono::duration_cast<milliseconds>(config.lease).count()),
+      executor_(std::make_unique<executor::LocalExecutor>(config.workers)) {}
 
 Scheduler::~Scheduler() { drain(); }
 
@@ -90,40 +92,40 @@ void Scheduler::tick() {
 /// Renews the leases of what runs, ends what has lost its own, and puts back what nobody holds.
 void Scheduler::beat() {
   std::vector<Claim> claims;
-  std::vector<Worker*> holders;
-  for (Worker& worker : workers_) {
+  std::vector<executor::RunId> holders;
+  for (const auto& [id, worker] : workers_) {
     claims.push_back(worker.claim);
-    holders.push_back(&worker);
+    holders.push_back(id);
   }
   for (const std::size_t i : store_.beat(claims, lease_).lost) {
-    holders[i]->lost = true;
-    holders[i]->child.signal(SIGKILL);
+    workers_.at(holders[i]).lost = true;
+    executor_->kill(holders[i]);
   }
   look_ = true;
   next_beat_ = Steady::now() + config_.lease / 6;
 }
 
 void Scheduler::reap() {
+  for (const executor::Ended& how : executor_->poll()) workers_.at(how.id).how = how;
   for (auto worker = workers_.begin(); worker != workers_.end();) {
-    const std::optional<End> end = worker->child.poll();
-    if (!end) {
-      if (Steady::now() > worker->deadline && !worker->timed_out) {
-        worker->timed_out = true;
-        worker->child.signal(SIGKILL);
-      }
+    if (!worker->second.how) {
       ++worker;
       continue;
     }
-    settle(*worker, *end);  // if it throws, the worker stays and is settled later
+    settle(worker->second);  // if it throws, the worker stays and is settled later
     worker = workers_.erase(worker);
     done_.running = static_cast<int>(workers_.size());
     look_ = true;
     changes_.announce();
   }
+  reap_publishers();
+}
+
+void Scheduler::reap_publishers() {
   for (auto publisher = publishers_.begin(); publisher != publishers_.end();) {
-    const std::optional<End> end = publisher->child.poll();
+    const std::optional<executor::ProcessEnd> end = publisher->process.poll();
     if (!end) {
-      if (Steady::now() > publisher->deadline) publisher->child.signal(SIGKILL);
+      if (Steady::now() > publisher->deadline) publisher->process.signal(SIGKILL);
       ++publisher;
       continue;
     }
@@ -137,9 +139,9 @@ bool Scheduler::room_on_disk() {
   return disk_left(config_.data) >= std::max(config_.quotas.disk_bytes / 2, crowded_bytes);
 }
 
-/// Starts workers while there are free places, room and work.
+/// Starts runs while there are free places, room on the disk and work.
 void Scheduler::fill() {
-  while (static_cast<int>(workers_.size()) < config_.workers) {
+  while (executor_->has_room()) {
     if (!room_on_disk()) throw std::runtime_error("less disk is left than half of --min-disk, or 8 MiB: no run is started");
     const std::optional<Claim> claim = store_.claim(lease_);
     if (!claim) return;
@@ -175,14 +177,13 @@ void Scheduler::start_worker(const Claim& claim) {
     look_ = true;
     return;
   }
-  const bool resume = fs::exists(directory.checkpoint(claim.run));
-  if (!resume) fs::remove_all(directory.work(claim.run));
-  const fs::path log = directory.log(claim.run);
-  workers_.push_back({.claim = claim,
-                      .study = directory,
-                      .child = Child(commands_.run(directory, claim, resume, job->particles), log, log),
-                      .deadline = Steady::now() + config_.time_limit,
-                      .resumed = resume});
+  const fs::path work = directory.work(claim.run);
+  const executor::RunId id = executor_->start({.name = claim.job_id + "/" + work.filename().string(),
+                                               .group = claim.job_id,
+                                               .command = commands_.run(directory, claim, job->particles),
+                                               .directory = work,
+                                               .log = directory.log(claim.run)});
+  workers_.emplace(id, Worker{.claim = claim, .study = directory});
   done_.running = static_cast<int>(workers_.size());
 }
 
@@ -199,7 +200,7 @@ void Scheduler::publish_complete() {
 void Scheduler::publish_interim() {
   next_interim_ = Steady::now() + std::chrono::seconds(2);
   std::set<std::string> ids;
-  for (const Worker& worker : workers_) ids.insert(worker.claim.job_id);
+  for (const auto& [id, worker] : workers_) ids.insert(worker.claim.job_id);
   for (const std::string& id : ids) {
     const std::optional<Job> job = store_.job(id);
     if (!job || !job->may_stop_early || ended(job->state) || interim_published_[job->number] == job->done) continue;
@@ -236,8 +237,11 @@ void Scheduler::remove_dismissed() {
   for (const auto& entry : fs::directory_iterator(data_.jobs())) {
     const std::string id = entry.path().filename().string();
     if (known.contains(id) || id.starts_with("new-")) continue;
-    const auto mine = [&](const auto& child) { return child.study.root == entry.path(); };
-    if (std::any_of(workers_.begin(), workers_.end(), mine) || std::any_of(publishers_.begin(), publishers_.end(), mine))
+    const bool works = std::any_of(workers_.begin(), workers_.end(),
+                                   [&](const auto& worker) { return worker.second.study.root == entry.path(); });
+    const bool publishes = std::any_of(publishers_.begin(), publishers_.end(),
+                                       [&](const Publisher& p) { return p.study.root == entry.path(); });
+    if (works || publishes)
       removing_ = 1;
     else if (store_.job(id))
       fs::remove_all(entry.path());
@@ -260,12 +264,13 @@ void Scheduler::drain() {
   if (thread_.joinable()) thread_.join();
 }
 
-/// In the scheduler's own thread: the workers ask the kernel to kill them when the thread that started them ends.
+/// In the scheduler's own thread: local runs ask the kernel to kill them when the thread that started them ends.
 void Scheduler::end_workers() {
-  for (Worker& worker : workers_) worker.child.signal(SIGTERM);
+  const bool leave = executor_->survives_us();  // the next talusd takes them over
   const Steady::time_point end = Steady::now() + config_.grace;
-  log_info("draining", {{"workers", workers_.size()}, {"grace_s", config_.grace.count()}});
-  while (!workers_.empty() && Steady::now() < end) {
+  log_info("draining", {{"workers", workers_.size()}, {"grace_s", leave ? 0 : config_.grace.count()}});
+  if (!leave) executor_->stop_all();
+  while (!leave && !workers_.empty() && Steady::now() < end) {
     try {
       reap();
     } catch (const std::exception& e) {
@@ -274,8 +279,7 @@ void Scheduler::end_workers() {
     }
     std::this_thread::sleep_for(poll_interval);
   }
-  for (Worker& worker : workers_) {
-    worker.child.signal(SIGKILL);
+  for (const auto& [id, worker] : workers_) {
     try {
       store_.give_back(worker.claim, false);
     } catch (const std::exception&) {  // the next talusd puts it back
@@ -283,6 +287,7 @@ void Scheduler::end_workers() {
   }
   workers_.clear();
   publishers_.clear();
+  executor_.reset();
 }
 
 }  // namespace talus::service

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <list>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <thread>
 
+#include "executor/executor.hpp"
 #include "jobs/changes.hpp"
 #include "jobs/commands.hpp"
 #include "queue/store.hpp"
@@ -43,16 +45,13 @@ class Scheduler {
   struct Worker {
     Claim claim;
     StudyDirectory study;
-    Child child;
-    Steady::time_point deadline;
-    bool resumed = false;
-    bool timed_out = false;
-    bool lost = false;  ///< its claim is not current any more
+    std::optional<executor::Ended> how = {};  ///< it has ended, but that may not be written down yet
+    bool lost = false;                        ///< its claim is not current any more
   };
   struct Publisher {
     Job job;
     StudyDirectory study;
-    Child child;
+    executor::Process process;
     Steady::time_point deadline;
     bool interim = false;
   };
@@ -62,7 +61,8 @@ class Scheduler {
   void end_workers();
   void beat();
   void reap();
-  void settle(Worker& worker, End end);
+  void reap_publishers();
+  void settle(Worker& worker);
   void settle_result(Worker& worker);
   void settle_failure(Worker& worker, const RunFailure& failure);
   void settle_broken(Worker& worker, const RunFailure& failure, bool crashed);
@@ -73,7 +73,7 @@ class Scheduler {
   void publish_complete();
   void publish_interim();
   void start_publisher(const Job& job, bool interim);
-  void settle_publisher(Publisher& publisher, End end);
+  void settle_publisher(Publisher& publisher, executor::ProcessEnd end);
   void run_echo();
   void remove_dismissed();
   void remove_orphans();
@@ -90,7 +90,8 @@ class Scheduler {
   Milliseconds lease_;
   WorkDone done_;
 
-  std::list<Worker> workers_;
+  std::unique_ptr<executor::Executor> executor_;
+  std::map<executor::RunId, Worker> workers_;
   std::list<Publisher> publishers_;
   std::map<std::int64_t, int> publish_failures_;              ///< by job
   std::map<std::int64_t, std::int64_t> interim_published_;    ///< by job: how many were done then

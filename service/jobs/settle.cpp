@@ -10,6 +10,9 @@ namespace talus::service {
 namespace {
 
 namespace fs = std::filesystem;
+using executor::last_line;
+using executor::ProcessEnd;
+using executor::tail;
 
 constexpr std::size_t tail_bytes = 4000;
 constexpr std::size_t max_summary_bytes = std::size_t{256} << 20;
@@ -17,13 +20,6 @@ constexpr int publish_attempts = 3;
 
 /// Exit codes of talus.
 enum Exit : int { ok = 0, bad_case = 3, diverged = 4, io = 5, interrupted = 6, sigint = 130, sigterm = 143 };
-
-/// The last line that says something.
-std::string last_line(std::string text) {
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ')) text.pop_back();
-  const std::size_t start = text.find_last_of('\n');
-  return start == std::string::npos ? text : text.substr(start + 1);
-}
 
 Json run_fields(const Claim& claim) {
   return {{"job", claim.job_id}, {"run", claim.run.index}, {"floor", claim.run.floor}, {"attempt", claim.attempt}};
@@ -37,31 +33,37 @@ void Scheduler::clear_work(const StudyDirectory& directory, const RunKey& run) {
   fs::remove(directory.log(run), ignored);
 }
 
-void Scheduler::settle(Worker& worker, End end) {
+void Scheduler::settle(Worker& worker) {
+  const executor::Ended& how = *worker.how;
+  const ProcessEnd end = how.end;
   if (worker.lost || !store_.is_current(worker.claim)) {
     ++done_.stale;
     if (!store_.is_open(worker.claim.run.job)) clear_work(worker.study, worker.claim.run);
     return;
   }
+  if (how.taken) return settle_broken(worker, {.reason = how.why}, false);
   const std::string log = tail(worker.study.log(worker.claim.run), tail_bytes);
   const std::string said = last_line(log).empty() ? "" : ": " + last_line(log);
   RunFailure failure;
   failure.log_tail = log;
   end.signal ? failure.signal = end.signal : failure.exit_code = end.exit_code;
   if (!end.signal && end.exit_code == ok) return settle_result(worker);
-  if (worker.timed_out || end.signal == SIGXCPU) {
+  if (how.timed_out || end.signal == SIGXCPU) {
     failure.reason = "took longer than the limit of " + std::to_string(config_.time_limit.count()) + " s";
     return settle_failure(worker, failure);
   }
   const bool asked = end.exit_code == interrupted || end.exit_code == sigint || end.exit_code == sigterm;
   if (draining_ && (end.signal || asked)) return settle_broken(worker, failure, false);
   if (end.signal || asked) {
-    failure.reason = (end.signal ? "killed: " + signal_text(end.signal) : "stopped from outside") + said;
+    failure.reason = !how.why.empty() ? how.why
+                     : end.signal     ? "killed: " + executor::signal_text(end.signal)
+                                      : "stopped from outside";
+    failure.reason += said;
     return settle_broken(worker, failure, true);
   }
   failure.reason = (end.exit_code == diverged ? "diverged" : "exit code " + std::to_string(end.exit_code)) + said;
   if (end.exit_code != io) return settle_failure(worker, failure);
-  if (worker.resumed) fs::remove_all(worker.study.work(worker.claim.run));  // a checkpoint that it cannot go on from
+  if (how.resumed) fs::remove_all(worker.study.work(worker.claim.run));  // a checkpoint that it cannot go on from
   settle_broken(worker, failure, room_on_disk());
 }
 
@@ -104,7 +106,7 @@ void Scheduler::settle_broken(Worker& worker, const RunFailure& failure, bool cr
   }
   store_.give_back(worker.claim, crashed);
   ++(crashed ? done_.crashed : done_.given_back);
-  if (!crashed) return;
+  if (!crashed && failure.reason.empty()) return;
   Json fields = run_fields(worker.claim);
   fields["why"] = failure.reason;
   log_info("run_again", fields);
@@ -115,12 +117,12 @@ void Scheduler::start_publisher(const Job& job, bool interim) {
   const fs::path log = data_.scratch() / ("stats-" + job.id + ".log");
   publishers_.push_back({.job = job,
                          .study = directory,
-                         .child = Child(commands_.stats(directory), log, log),
+                         .process = executor::Process(commands_.stats(directory), log, log),
                          .deadline = Steady::now() + std::chrono::minutes(5),
                          .interim = interim});
 }
 
-void Scheduler::settle_publisher(Publisher& publisher, End end) {
+void Scheduler::settle_publisher(Publisher& publisher, ProcessEnd end) {
   const Job& job = publisher.job;
   if (!store_.is_open(job.number)) return;
   if (end.signal || end.exit_code != ok) {

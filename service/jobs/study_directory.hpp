@@ -32,7 +32,6 @@ struct StudyDirectory {
   std::filesystem::path failure(const RunKey& run) const;  ///< runs/000012.failed.json
   std::filesystem::path work(const RunKey& run) const;     ///< work/000012: where its process writes
   std::filesystem::path log(const RunKey& run) const;
-  std::filesystem::path checkpoint(const RunKey& run) const { return work(run) / "checkpoint.h5"; }
   std::filesystem::path profiles() const { return root / "profiles"; }
 };
 

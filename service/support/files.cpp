@@ -91,17 +91,6 @@ std::optional<std::string> read_file(const fs::path& path, std::size_t max_bytes
   }
 }
 
-std::string tail(const fs::path& path, std::size_t max_bytes) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return {};
-  const auto size = static_cast<std::size_t>(file.tellg());
-  std::string text(std::min(size, max_bytes), '\0');
-  file.seekg(static_cast<std::streamoff>(size - text.size()));
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  return text;
-}
-
 std::uint64_t disk_left(const fs::path& path) {
   struct statvfs info {};
   return ::statvfs(path.c_str(), &info) == 0 ? std::uint64_t{info.f_bavail} * info.f_frsize : 0;

@@ -45,9 +45,6 @@ void rename_durably(const std::filesystem::path& from, const std::filesystem::pa
 /// @throws FileError when it cannot be read or is larger
 std::optional<std::string> read_file(const std::filesystem::path& path, std::size_t max_bytes);
 
-/// The last `max_bytes` of a text file; empty where it cannot be read.
-std::string tail(const std::filesystem::path& path, std::size_t max_bytes);
-
 /// Bytes that may still be written where `path` lies; 0 where nobody knows.
 std::uint64_t disk_left(const std::filesystem::path& path);
 

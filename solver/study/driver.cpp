@@ -9,13 +9,13 @@
 #include <charconv>
 #include <cstdint>
 #include <deque>
-#include <list>
+#include <map>
 #include <thread>
 
+#include "executor/local.hpp"
 #include "io/files.hpp"
 #include "monte_carlo/statistics.hpp"
 #include "study/ledger.hpp"
-#include "study/process.hpp"
 #include "study/publish.hpp"
 #include "study/stop_rule.hpp"
 #include "study/summary.hpp"
@@ -25,10 +25,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using executor::Ended;
+using executor::Executor;
 
-constexpr int most_attempts = 2;
 constexpr std::size_t tail_bytes = 4000;
-constexpr const char* checkpoint_name = "checkpoint.h5";
 
 /// A job and how often it has been tried.
 struct Task {
@@ -38,8 +38,7 @@ struct Task {
 
 struct Worker {
   Task task;
-  bool resumed = false;
-  Process process;
+  bool unwanted = false;  ///< killed, since the study needs it no more
 };
 
 /// 1e-6 k in the shortest form that reads back.
@@ -48,11 +47,9 @@ std::string perturbation(std::int64_t k) {
   return {text, std::to_chars(text, text + sizeof text, static_cast<double>(k) / 1e6).ptr};
 }
 
-/// The last line that says something.
-std::string last_line(std::string text) {
-  while (!text.empty() && (text.back() == '\n' || text.back() == '\r' || text.back() == ' ')) text.pop_back();
-  const std::size_t start = text.find_last_of('\n');
-  return start == std::string::npos ? text : text.substr(start + 1);
+std::unique_ptr<Executor> make_executor(const DriverOptions& options, const StudyPaths& paths) {
+  if (options.make_executor) return options.make_executor(paths);
+  return std::make_unique<executor::LocalExecutor>(options.workers);
 }
 
 class Driver {
@@ -62,6 +59,7 @@ class Driver {
         options_(options),
         paths_{directory},
         ledger_(paths_, plan),
+        executor_(make_executor(options, paths_)),
         last_(std::min(options.last.value_or(plan.study.realizations), plan.study.realizations)),
         next_(options.first) {}
 
@@ -74,14 +72,17 @@ class Driver {
   std::optional<Task> take();
   void start(Task task);
   bool reap();
-  void ended(Worker& worker, ProcessEnd end);
-  void failed(const Worker& worker, ProcessEnd end, const std::string& reason);
-  void stop_workers(bool checkpoint);
+  void ended(Task task, const Ended& how);
+  void broken_off(const Task& task, const Ended& how, const std::string& said);
+  void again(const Task& task) { queue_.push_front(task); }
+  void failed(const Task& task, const Ended& how, const std::string& reason);
+  void drop_realizations();
+  void stop_workers();
   bool idle() const { return workers_.empty(); }
   bool here(Job job) const {
     return job.floor ? options_.first == 0 : job.index >= options_.first && job.index < last_;
   }
-  std::vector<std::string> arguments(Job job, bool resume) const;
+  std::vector<std::string> arguments(Job job) const;
   void publish() const { write_tables(paths_, plan_, counted(plan_, ledger_.runs()), ledger_.floor()); }
   void report(bool now = false);
   void note(const std::string& text) const {
@@ -93,11 +94,12 @@ class Driver {
   const DriverOptions& options_;
   StudyPaths paths_;
   Ledger ledger_;
+  std::unique_ptr<Executor> executor_;
   std::int64_t last_;
   std::int64_t next_;       ///< the first realization not looked at yet
   std::deque<Task> queue_;  ///< before those: what must be tried again, and the noise floor
-  std::list<Worker> workers_;
   FileDescriptor orphan_lock_;
+  std::map<executor::RunId, Worker> workers_;
   std::int64_t made_ = 0;
   Clock::time_point begin_ = Clock::now();
   Clock::time_point reported_ = begin_;
@@ -155,108 +157,126 @@ std::optional<Task> Driver::take() {
   return std::nullopt;
 }
 
-std::vector<std::string> Driver::arguments(Job job, bool resume) const {
+std::vector<std::string> Driver::arguments(Job job) const {
   std::vector<std::string> all = options_.program;
   all.insert(all.end(), {paths_.resolved_case().string(), "--realization", std::to_string(job.floor ? 0 : job.index),
                          "--seed", std::to_string(plan_.seed), "--threads", std::to_string(options_.threads), "--out",
                          paths_.work(job).string(), "--study-worker"});
   if (job.floor) all.insert(all.end(), {"--perturbation", perturbation(job.index)});
-  if (resume) all.emplace_back("--resume");
   return all;
 }
 
 void Driver::start(Task task) {
-  const fs::path work = paths_.work(task.job);
-  const bool resume = fs::exists(work / checkpoint_name);
-  if (!resume) fs::remove_all(work);
-  fs::remove(paths_.log(task.job));
   ++task.attempts;
-  workers_.push_back({task, resume, Process(arguments(task.job, resume), paths_.log(task.job))});
+  const fs::path work = paths_.work(task.job);
+  const executor::RunId id = executor_->start({.name = work.filename().string(),
+                                               .group = plan_.case_hash,
+                                               .command = {.arguments = arguments(task.job)},
+                                               .directory = work,
+                                               .log = paths_.log(task.job)});
+  workers_.emplace(id, Worker{task});
 }
 
-void Driver::failed(const Worker& worker, ProcessEnd end, const std::string& reason) {
-  const Job job = worker.task.job;
+void Driver::failed(const Task& task, const Ended& how, const std::string& reason) {
+  const Job job = task.job;
   std::string rerun = "talus run " + paths_.resolved_case().string() + " --realization " +
                       std::to_string(job.floor ? 0 : job.index) + " --seed " + std::to_string(plan_.seed) +
                       (job.floor ? " --perturbation " + perturbation(job.index) : "") + " --out DIR";
   ledger_.commit_failure(job, {.reason = reason,
-                               .exit_code = end.exit_code,
-                               .signal = end.signal,
-                               .attempts = worker.task.attempts,
-                               .log_tail = tail(paths_.log(job), tail_bytes),
+                               .exit_code = how.end.exit_code,
+                               .signal = how.end.signal,
+                               .attempts = task.attempts,
+                               .log_tail = executor::tail(paths_.log(job), tail_bytes),
                                .rerun = std::move(rerun)});
   ++made_;
   note(job_name(job) + " failed: " + reason);
 }
 
+/// It came to no end of its own: once more, unless it has been tried often enough.
+void Driver::broken_off(const Task& task, const Ended& how, const std::string& said) {
+  std::string text = how.why;
+  if (text.empty())
+    text = how.end.signal ? "killed: " + executor::signal_text(how.end.signal)
+                          : "stopped from outside (exit code " + std::to_string(how.end.exit_code) + ")";
+  if (task.attempts >= options_.attempts)
+    return failed(task, how, text + ", " + std::to_string(task.attempts) + " times" + said);
+  note(job_name(task.job) + " was " + text + "; trying once more");
+  again(task);
+}
+
 /// What the end of a worker means for its job. Throws where it means that the study cannot go on.
-void Driver::ended(Worker& worker, ProcessEnd end) {
-  const Job job = worker.task.job;
-  const std::string log = tail(paths_.log(job), tail_bytes);
-  const std::string said = last_line(log).empty() ? "" : ": " + last_line(log);
-  const auto code = static_cast<Exit>(end.exit_code);
-  const bool broken_off = end.signal != 0 || code == Exit::interrupted || code == Exit::sigint || code == Exit::sigterm;
-  if (!end.signal && code == Exit::ok) {
-    if (!ledger_.finished_in_work(job)) return failed(worker, end, "it ended well but left no readable result" + said);
+void Driver::ended(Task task, const Ended& how) {
+  const Job job = task.job;
+  if (how.taken) {
+    if (!how.why.empty() && interrupts() == 0) note(job_name(job) + " was " + how.why + "; it goes on elsewhere");
+    --task.attempts;
+    return again(task);
+  }
+  const std::string log = executor::tail(paths_.log(job), tail_bytes);
+  const std::string said = executor::last_line(log).empty() ? "" : ": " + executor::last_line(log);
+  const auto code = static_cast<Exit>(how.end.exit_code);
+  const bool asked = code == Exit::interrupted || code == Exit::sigint || code == Exit::sigterm;
+  if (!how.end.signal && code == Exit::ok) {
+    if (!ledger_.finished_in_work(job)) return failed(task, how, "it ended well but left no readable result" + said);
     ledger_.commit(job);
     ++made_;
-  } else if (broken_off && interrupts() > 0) {
-    return;  // asked to stop, it did
-  } else if (broken_off) {
-    const std::string how = end.signal ? "killed: " + signal_text(end.signal)
-                                       : "stopped from outside (exit code " + std::to_string(end.exit_code) + ")";
-    if (worker.task.attempts >= most_attempts)
-      return failed(worker, end, how + ", " + std::to_string(worker.task.attempts) + " times" + said);
-    note(job_name(job) + " was " + how + "; trying once more");
-    queue_.push_front(worker.task);
-  } else if (code == Exit::io && worker.resumed) {
+  } else if (how.end.signal || asked) {
+    if (interrupts() == 0) broken_off(task, how, said);  // else: asked to stop, it did
+  } else if (code == Exit::io && how.resumed) {
     note(job_name(job) + " cannot go on from its checkpoint" + said + "; starting it again");
     fs::remove_all(paths_.work(job));
-    queue_.push_front(worker.task);
+    again(task);
+  } else if (code == Exit::io && executor_->survives_us() && task.attempts < options_.attempts) {
+    note(job_name(job) + " cannot read or write" + said + "; trying once more, maybe on another machine");
+    again(task);
   } else if (code == Exit::io) {
     throw IoError("the study stops, since " + job_name(job) + " cannot read or write" + said);
   } else if (code == Exit::usage || code == Exit::bad_case) {
     throw ConfigError("", "the study stops, since " + job_name(job) + " refuses the case:\n" + log);
   } else if (code == Exit::diverged) {
-    failed(worker, end, "diverged" + said);
+    failed(task, how, "diverged" + said);
   } else {
-    failed(worker, end, "exit code " + std::to_string(end.exit_code) + said);
+    failed(task, how, "exit code " + std::to_string(how.end.exit_code) + said);
   }
 }
 
 /// Handles every worker that has ended; true where there was one.
 bool Driver::reap() {
-  bool any = false;
-  for (auto worker = workers_.begin(); worker != workers_.end();) {
-    const std::optional<ProcessEnd> end = worker->process.poll();
-    if (!end) {
-      ++worker;
-      continue;
-    }
-    any = true;
-    ended(*worker, *end);
-    worker = workers_.erase(worker);
+  const std::vector<Ended> all = executor_->poll();
+  for (const Ended& how : all) {
+    const Worker worker = workers_.at(how.id);
+    workers_.erase(how.id);
+    if (!worker.unwanted) ended(worker.task, how);
   }
-  return any;
+  return !all.empty();
 }
 
-/// Ends all workers. With `checkpoint` they are asked first and given time; what finishes meanwhile counts.
-void Driver::stop_workers(bool checkpoint) {
-  if (checkpoint) {
-    for (const Worker& worker : workers_) worker.process.signal(SIGTERM);
-    const Clock::time_point begin = Clock::now();
-    while (!idle() && Clock::now() - begin < options_.grace && interrupts() < 2) {
-      for (auto worker = workers_.begin(); worker != workers_.end();) {
-        const std::optional<ProcessEnd> end = worker->process.poll();
-        if (end && !end->signal && end->exit_code == 0 && ledger_.finished_in_work(worker->task.job))
-          ledger_.commit(worker->task.job);
-        worker = end ? workers_.erase(worker) : std::next(worker);
-      }
-      report();
-      std::this_thread::sleep_for(options_.poll);
-    }
+/// A study that stops early still owes its noise floor, and nothing else.
+void Driver::drop_realizations() {
+  next_ = last_;
+  std::erase_if(queue_, [](const Task& task) { return !task.job.floor; });
+  for (auto& [id, worker] : workers_) {
+    if (worker.task.job.floor || worker.unwanted) continue;
+    worker.unwanted = true;
+    executor_->kill(id);
   }
-  workers_.clear();  // kills what is left
+}
+
+/// Asks all workers to end and gives them time; what finishes meanwhile counts. Local ones that do not are killed with
+/// the executor; others are found again by the next study here.
+void Driver::stop_workers() {
+  executor_->stop_all();
+  const Clock::time_point begin = Clock::now();
+  while (!idle() && Clock::now() - begin < options_.grace && interrupts() < 2) {
+    for (const Ended& how : executor_->poll()) {
+      const Worker worker = workers_.at(how.id);
+      workers_.erase(how.id);
+      const bool well = !how.taken && !how.end.signal && how.end.exit_code == 0;
+      if (well && !worker.unwanted && ledger_.finished_in_work(worker.task.job)) ledger_.commit(worker.task.job);
+    }
+    report();
+    std::this_thread::sleep_for(options_.poll);
+  }
 }
 
 /// Whether the books already decide how the study ends.
@@ -300,13 +320,8 @@ Outcome Driver::run() {
   Clock::time_point published = Clock::now();
   try {
     while (interrupts() == 0 && outcome != Outcome::too_many_failed) {
-      // A study that stops early still owes its noise floor.
-      if (outcome == Outcome::stopped_early) {
-        next_ = last_;
-        std::erase_if(queue_, [](const Task& task) { return !task.job.floor; });
-        workers_.remove_if([](const Worker& worker) { return !worker.task.job.floor; });
-      }
-      while (static_cast<int>(workers_.size()) < options_.workers) {
+      if (outcome == Outcome::stopped_early) drop_realizations();
+      while (executor_->has_room()) {
         const std::optional<Task> task = take();
         if (!task) break;
         start(*task);
@@ -320,15 +335,16 @@ Outcome Driver::run() {
       publish();
       published = Clock::now();
     }
-    if (!idle()) stop_workers(true);
+    if (!idle()) stop_workers();
   } catch (...) {
-    stop_workers(true);
+    stop_workers();
     throw;
   }
   publish();
   report(true);
   if (interrupts() > 0) return Outcome::interrupted;
   if (outcome == Outcome::too_many_failed) return Outcome::too_many_failed;
+  executor_.reset();
   fs::remove_all(paths_.work());
   if (too_many_failed(plan_, counted(plan_, ledger_.runs()))) return Outcome::too_many_failed;
   return outcome.value_or(Outcome::finished);
@@ -367,6 +383,8 @@ Outcome run_study(const Plan& plan, const nlohmann::ordered_json& resolved, cons
     const Outcome outcome = Driver(plan, directory, options).run();
     if (outcome == Outcome::finished || outcome == Outcome::stopped_early) claimed.mark_finished();
     return outcome;
+  } catch (const executor::ProcessError& e) {
+    throw IoError(e.what());
   } catch (const fs::filesystem_error& e) {
     throw_io_error("write", e.path1().empty() ? directory : e.path1(), e.code().value());
   }

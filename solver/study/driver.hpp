@@ -5,11 +5,14 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "executor/executor.hpp"
+#include "study/paths.hpp"
 #include "study/plan.hpp"
 #include "study/progress.hpp"
 
@@ -18,10 +21,12 @@ namespace talus {
 /// How to run a study; none of it changes a result.
 struct DriverOptions {
   std::vector<std::string> program;  ///< called as `program... CASE --realization I ...`: the arguments of `talus run`
-  int workers = 1;                   ///< processes at a time, >= 1
+  int workers = 1;                   ///< processes at a time, >= 1; without `make_executor`
+  std::function<std::unique_ptr<executor::Executor>(const StudyPaths&)> make_executor;  ///< unset: processes here
   int threads = 1;                   ///< of each, >= 1
   std::int64_t first = 0;            ///< realizations first <= i < last are run here, the others elsewhere
   std::optional<std::int64_t> last;  ///< unset: the planned number
+  int attempts = 2;                  ///< of a run that breaks off, before it has failed; >= 1
   bool retry_failed = false;         ///< run again what has failed before
   std::function<int()>
       interrupts;  ///< how often a person has asked to stop: once, workers checkpoint; twice, they are killed
@@ -41,7 +46,7 @@ enum class Outcome { finished, stopped_early, interrupted, too_many_failed };
 
 /// Runs what `plan` asks for and `directory` does not hold yet.
 ///
-/// A worker that reports a divergence or an internal error, or that is killed twice, is a failed realization: recorded,
+/// A worker that reports a divergence or an internal error, or that is killed `attempts` times, is a failed realization: recorded,
 /// kept in the denominator, not drawn again. A worker that finds the case bad or the disk full ends the study instead:
 /// nothing is recorded, and the same command goes on.
 /// @param resolved  LoadedCase::resolved of `plan`; what the workers read

@@ -7,11 +7,11 @@
 #include <sstream>
 #include <thread>
 
+#include "executor/process.hpp"
 #include "math/error.hpp"
 #include "studies.hpp"
 #include "study/csv.hpp"
 #include "study/driver.hpp"
-#include "study/process.hpp"
 
 using namespace talus;
 using namespace talus::fixtures;
@@ -314,7 +314,7 @@ void kill_and_finish(Study& s, int begun) {
   std::vector<std::string> command{STUDY_PROCESS, s.out.string(), std::to_string(s.plan.study.realizations), "3"};
   for (const std::string& word : s.program()) command.push_back(word);
   {
-    Process study(command, s.directory.path / "log");
+    executor::Process study({.arguments = command}, s.directory.path / "log", s.directory.path / "log");
     wait_until([&] { return s.count("begin ") >= begun; });
     ASSERT_FALSE(study.poll()) << content(s.directory.path / "log");
     study.signal(SIGKILL);

@@ -1,0 +1,55 @@
+#pragma once
+// Where runs of the solver are executed: here, or by Slurm. Who has runs to execute sees this interface alone.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "executor/process.hpp"
+
+namespace talus::executor {
+
+/// One run: a program that writes into a directory of its own, leaves checkpoint.h5 there (exit code 6) when it gets a
+/// SIGTERM, and goes on from it with `--resume`.
+struct Run {
+  std::string name;   ///< differs from that of every other open run, and is the same after a restart of ours
+  std::string group;  ///< runs of one group take about as long as each other
+  Command command;    ///< paths are absolute
+  std::filesystem::path directory;
+  std::filesystem::path log;
+};
+
+using RunId = std::int64_t;
+
+/// How a run ended.
+struct Ended {
+  RunId id = 0;
+  ProcessEnd end = {};
+  bool resumed = false;    ///< it began from a checkpoint
+  bool timed_out = false;  ///< killed, since it took longer than its limits.wall_seconds
+  bool taken = false;      ///< taken from its machine through no fault of its own; `end` says nothing
+  std::string why = {};    ///< one line, where the end is not the process's own
+};
+
+/// To be used by one thread.
+class Executor {
+ public:
+  virtual ~Executor() = default;
+  /// Whether it takes another run now.
+  virtual bool has_room() const = 0;
+  /// Takes a run, from which something may be left in its directory. Its end is told by poll(), once.
+  /// @throws ProcessError
+  virtual RunId start(const Run& run) = 0;
+  /// What has ended since the last call; never waits.
+  /// @throws ProcessError when runs cannot be executed at all; a later call tries again
+  virtual std::vector<Ended> poll() = 0;
+  /// Asks all runs to checkpoint and end.
+  virtual void stop_all() = 0;
+  /// Ends a run.
+  virtual void kill(RunId id) = 0;
+  /// Runs go on when this process ends, and who starts a run of the same name again takes it over.
+  virtual bool survives_us() const = 0;
+};
+
+}  // namespace talus::executor
