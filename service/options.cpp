@@ -46,6 +46,8 @@ Options read_options(int argc, char** argv) {
   Config& config = options.config;
   config.program = default_program();
   std::string listen = "127.0.0.1:8080";
+  std::string place = "local";
+  fs::path slurm;
   double min_disk_mib = 1024.0, body_mib = 4.0, memory_mib = 0.0;
   int time_limit = 6 * 3600, grace = 30, lease = 30;
 
@@ -54,7 +56,11 @@ Options read_options(int argc, char** argv) {
   app.set_config("--config", "", "file of the same options: name = value");
   app.add_option("--data", config.data, "directory for the queue and all results; created");
   app.add_option("--listen", listen, "ADDRESS:PORT; port 0: any free one; other than loopback needs --tokens")->capture_default_str();
-  app.add_option("--workers", config.workers, "runs at a time")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--executor", place, "where runs are executed: local (here) or slurm (array jobs)")
+      ->check(CLI::IsMember({"local", "slurm"}))
+      ->capture_default_str();
+  app.add_option("--slurm", slurm, "with --executor slurm: file that says how");
+  app.add_option("--workers", config.workers, "runs at a time with --executor local")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--threads", config.threads, "OpenMP threads of each run")->check(CLI::Range(1, 1024))->capture_default_str();
   app.add_option("--tokens", config.tokens, "file of tokens; who has none is refused");
   app.add_option("--talus", config.program, "the talus program; otherwise the one beside talusd");
@@ -98,6 +104,13 @@ Options read_options(int argc, char** argv) {
   else if (!is_loopback(config.address) && config.tokens.empty())
     options.exit = wrong("--listen " + config.address + " can be reached by others: give --tokens FILE");
   else if (!fs::exists(config.program)) options.exit = wrong("there is no " + config.program.string() + "; give --talus");
+  if (!options.exit && place == "slurm") {
+    try {
+      config.slurm = slurm.empty() ? executor::SlurmConfig{} : executor::read_slurm_config(slurm);
+    } catch (const executor::SlurmConfigError& e) {
+      options.exit = wrong(e.what());
+    }
+  }
   if (options.exit) return options;
   config.data = fs::absolute(config.data);
   config.program = fs::absolute(config.program);

@@ -4,7 +4,10 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+
+#include "executor/slurm_config.hpp"
 
 namespace talus::service {
 
@@ -27,7 +30,8 @@ struct Config {
   std::string address = "127.0.0.1";
   int port = 8080;                 ///< 0: any free one
   std::string public_url;          ///< of absolute links; empty: from the Host header
-  int workers = 1;                 ///< runs at a time
+  std::optional<executor::SlurmConfig> slurm;  ///< unset: runs are processes of this machine
+  int workers = 1;                 ///< runs at a time on this machine
   int threads = 1;                 ///< of each run
   int attempts = 5;                ///< crashes of a run before it counts as failed
   int niceness = 5;                ///< of runs

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "executor/local.hpp"
+#include "executor/slurm.hpp"
 #include "support/files.hpp"
 #include "support/log.hpp"
 
@@ -19,6 +20,14 @@ constexpr milliseconds idle_interval{500};
 constexpr milliseconds trouble_interval{1000};
 constexpr std::uint64_t crowded_bytes = std::uint64_t{8} << 20;  ///< a run that cannot write then is not to blame
 
+std::unique_ptr<executor::Executor> make_executor(const Config& config) {
+  if (!config.slurm) return std::make_unique<executor::LocalExecutor>(config.workers);
+  const auto note = [](const std::string& text) { log_info("slurm", {{"said", text}}); };
+  return std::make_unique<executor::SlurmExecutor>(*config.slurm, DataDirectory{config.data}.slurm(),
+                                                   std::vector{config.program.string(), std::string("array-task")},
+                                                   config.threads, note);
+}
+
 }  // namespace
 
 Scheduler::Scheduler(const Config& config, Store& store, Changes& changes)
@@ -28,7 +37,7 @@ Scheduler::Scheduler(const Config& config, Store& store, Changes& changes)
       changes_(changes),
       commands_(config),
       lease_(std::chrono::duration_cast<milliseconds>(config.lease).count()),
-      executor_(std::make_unique<executor::LocalExecutor>(config.workers)) {}
+      executor_(make_executor(config)) {}
 
 Scheduler::~Scheduler() { drain(); }
 

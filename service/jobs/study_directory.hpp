@@ -18,6 +18,7 @@ struct DataDirectory {
   std::filesystem::path workers_lock() const { return root / "workers.lock"; }
   std::filesystem::path jobs() const { return root / "jobs"; }
   std::filesystem::path scratch() const { return root / "scratch"; }
+  std::filesystem::path slurm() const { return root / "slurm"; }
   std::filesystem::path job(const std::string& id) const { return jobs() / id; }
 };
 

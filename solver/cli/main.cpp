@@ -47,6 +47,7 @@ int main(int argc, char** argv) {
   talus::cli::add_profile(app, action);
   talus::cli::add_remote(app, action);
   talus::cli::add_bench(app, action);
+  talus::cli::add_array_task(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

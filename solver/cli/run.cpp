@@ -216,7 +216,7 @@ Exit run(const RunOptions& options) {
     write_checkpoint(checkpoint_file, state, header);
   };
 
-  catch_stop_signals();
+  catch_stop_signals(!options.study_worker);
   double next_checkpoint = checkpoint_period;
   try {
     while (!simulation.finished()) {

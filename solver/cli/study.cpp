@@ -16,6 +16,7 @@
 #include "cli/signals.hpp"
 #include "cli/verbs.hpp"
 #include "cli/version.hpp"
+#include "executor/slurm.hpp"
 #include "figures/figures.hpp"
 #include "io/files.hpp"
 #include "study/driver.hpp"
@@ -38,6 +39,8 @@ struct StudyOptions {
   std::optional<int> workers;
   std::vector<std::int64_t> range;  ///< first and last, both included
   int threads = 1;
+  std::string executor = "local";
+  fs::path slurm;  ///< configuration of it; empty: all as it comes
   bool json = false, retry_failed = false, no_figures = false, prepare = false;
 };
 
@@ -89,6 +92,19 @@ std::uint64_t choose_seed(const StudyOptions& options, const Case& problem) {
   return begun ? begun->seed : seed_from_clock();
 }
 
+constexpr int slurm_attempts = 5;  ///< machines differ, and people cancel jobs
+
+/// Array jobs of Slurm instead of processes here.
+void use_slurm(DriverOptions& driver, const StudyOptions& options, Reporter& reporter) {
+  const auto config = options.slurm.empty() ? executor::SlurmConfig{} : executor::read_slurm_config(options.slurm);
+  const std::vector<std::string> array_task{driver.program.front(), "array-task"};
+  const auto note = [&reporter](const std::string& text) { reporter.note(text); };
+  driver.make_executor = [=, threads = driver.threads](const StudyPaths& paths) {
+    return std::make_unique<executor::SlurmExecutor>(config, fs::absolute(paths.work()) / "slurm", array_task, threads, note);
+  };
+  driver.attempts = slurm_attempts;
+}
+
 DriverOptions driver_options(const StudyOptions& options, const Plan& plan, Reporter& reporter) {
   DriverOptions driver;
   driver.program = {fs::read_symlink("/proc/self/exe").string(), "run"};
@@ -106,6 +122,7 @@ DriverOptions driver_options(const StudyOptions& options, const Plan& plan, Repo
   driver.interrupts = [] { return stop_requested() ? 1 : 0; };
   driver.report = [&reporter](const Progress& progress) { reporter.show(progress); };
   driver.note = [&reporter](const std::string& text) { reporter.note(text); };
+  if (options.executor == "slurm") use_slurm(driver, options, reporter);
   return driver;
 }
 
@@ -133,7 +150,7 @@ Exit exit_code(Outcome outcome) {
   return outcome == Outcome::too_many_failed ? Exit::too_many_failed : Exit::ok;
 }
 
-Exit study(const StudyOptions& options) {
+Exit study(const StudyOptions& options) try {
   if (!options.range.empty() && options.range.front() > options.range.back()) {
     std::cerr << "--range: the first realization comes after the last\n";
     return Exit::usage;
@@ -163,6 +180,9 @@ Exit study(const StudyOptions& options) {
   if (outcome != Outcome::interrupted && !options.no_figures) draw_figures(options.out);
   print(options.out, options.json);
   return code;
+} catch (const executor::SlurmConfigError& e) {
+  std::cerr << e.what() << "\n";
+  return Exit::usage;
 }
 
 }  // namespace
@@ -182,6 +202,9 @@ void add_study(CLI::App& app, Action& action) {
   verb->add_option("--workers", options->workers, "processes at a time; otherwise cores / threads")
       ->check(CLI::Range(1, 4096));
   verb->add_option("--threads", options->threads, "OpenMP threads of each process")->check(CLI::Range(1, 4096));
+  verb->add_option("--executor", options->executor, "where realizations run: local (here) or slurm (array jobs)")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  verb->add_option("--slurm", options->slurm, "with --executor slurm: file that says how (deploy/slurm/slurm.json)");
   verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")
       ->allow_extra_args(false);
   verb->add_option(
@@ -194,7 +217,10 @@ void add_study(CLI::App& app, Action& action) {
   verb->add_flag("--no-figures", options->no_figures, "draw none at the end");
   verb->add_flag("--prepare", options->prepare, "only write plan and case, for others to run (talusd does)");
   verb->add_flag("--json", options->json, "print study.json on stdout");
-  verb->callback([options, &action] { action = [options] { return study(*options); }; });
+  verb->callback([options, &action] {
+    if (options->executor == "slurm") options->out = fs::absolute(options->out);  // tasks begin in another directory
+    action = [options] { return study(*options); };
+  });
 }
 
 }  // namespace talus::cli

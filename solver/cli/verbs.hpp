@@ -21,6 +21,7 @@ void add_plot(CLI::App& app, Action& action);
 void add_schema(CLI::App& app, Action& action);
 void add_profile(CLI::App& app, Action& action);
 void add_remote(CLI::App& app, Action& action);  ///< submit, status, watch, results, cancel
+void add_array_task(CLI::App& app, Action& action);
 void add_bench(CLI::App& app, Action& action);
 
 }  // namespace talus::cli

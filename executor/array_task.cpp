@@ -1,0 +1,112 @@
+#include "executor/array_task.hpp"
+
+#include <signal.h>
+
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <utility>
+
+namespace talus::executor {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr int io_exit = 5;           ///< talus: a file cannot be read or written
+constexpr int interrupted_exit = 6;  ///< talus: stopped with a checkpoint
+
+double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
+
+/// The signals that we wait for instead of being interrupted by them.
+class Signals {
+ public:
+  Signals() {
+    sigemptyset(&set_);
+    for (const int number : {SIGCHLD, SIGTERM, SIGINT}) sigaddset(&set_, number);
+    sigprocmask(SIG_BLOCK, &set_, nullptr);
+  }
+  /// Waits for a second at most.
+  void wait() {
+    const timespec second{1, 0};
+    const int number = sigtimedwait(&set_, nullptr, &second);
+    if (number == SIGTERM || number == SIGINT) asked_to_stop_ = true;
+  }
+  bool asked_to_stop() const { return asked_to_stop_; }
+
+ private:
+  sigset_t set_;
+  bool asked_to_stop_ = false;
+};
+
+/// Whether a run that was asked to stop did so before its end.
+bool broke_off(const ProcessEnd& end) {
+  return end.signal != 0 || end.exit_code == interrupted_exit || end.exit_code == 128 + SIGTERM;
+}
+
+class ArrayTask {
+ public:
+  ArrayTask(const BatchDirectory& batch, std::size_t index) : batch_(batch), index_(index) {}
+
+  void execute(const std::vector<Run>& runs) {
+    for (std::size_t position = 0; position < runs.size() && !signals_.asked_to_stop(); ++position) {
+      const RunPlace place{index_, position};
+      if (batch_.has_status(place)) continue;
+      const RunStatus status = batch_.is_killed(place) ? RunStatus{.end = {.signal = SIGKILL}} : outcome(runs[position], place);
+      if (signals_.asked_to_stop() && broke_off(status.end)) return;
+      batch_.write_status(place, status);
+    }
+  }
+
+ private:
+  RunStatus outcome(const Run& run, RunPlace place) try {
+    return execute(run, place);
+  } catch (const ProcessError& e) {
+    return {.end = {.exit_code = io_exit}, .why = e.what()};
+  }
+
+  RunStatus execute(const Run& run, RunPlace place) {
+    RunStatus status{.resumed = fs::exists(run.directory / "checkpoint.h5")};
+    Command command = run.command;
+    command.arguments.emplace_back("--resume");  // also where there is nothing to resume, or where it is finished
+    const Clock::time_point begin = Clock::now();
+    Process process(command, run.log, run.log);
+    bool told = false;
+    for (std::optional<ProcessEnd> end; !(end = process.poll());) {
+      signals_.wait();
+      if (signals_.asked_to_stop() && !std::exchange(told, true)) process.signal(SIGTERM);
+      status.timed_out |= command.limits.wall_seconds > 0 &&
+                          seconds_since(begin) > static_cast<double>(command.limits.wall_seconds);
+      if (status.timed_out || batch_.is_killed(place)) process.signal(SIGKILL);
+    }
+    status.end = *process.poll();
+    status.seconds = seconds_since(begin);
+    return status;
+  }
+
+  const BatchDirectory& batch_;
+  std::size_t index_;
+  Signals signals_;
+};
+
+}  // namespace
+
+int execute_array_task(const BatchDirectory& batch) {
+  const char* text = std::getenv("SLURM_ARRAY_TASK_ID");
+  std::size_t index = 0;
+  if (!text || std::from_chars(text, text + std::strlen(text), index).ptr != text + std::strlen(text) || !*text) {
+    std::cerr << "SLURM_ARRAY_TASK_ID is not the index of an array task\n";
+    return 2;
+  }
+  const std::optional<std::vector<Run>> runs = batch.runs(index);
+  if (!runs) {
+    std::cerr << batch.path().string() << " holds no runs for this task (any more)\n";
+    return 0;
+  }
+  ArrayTask(batch, index).execute(*runs);
+  return 0;
+}
+
+}  // namespace talus::executor

@@ -1,0 +1,207 @@
+#include "executor/slurm.hpp"
+
+#include <signal.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace talus::executor {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t pilots = 8;  ///< runs at a time while nobody knows how long they take
+constexpr int misses = 2;          ///< looks at the queue after which a task is gone
+
+constexpr const char* never_submitted = "never submitted";
+
+/// Ends of a task that say nothing about the run in it. COMPLETED: it was asked to stop, and left a checkpoint.
+bool is_innocent(const std::string& state) {
+  constexpr std::array all{"COMPLETED", "NODE_FAIL", "PREEMPTED", "BOOT_FAIL", never_submitted};
+  return std::find(all.begin(), all.end(), state) != all.end();
+}
+
+}  // namespace
+
+SlurmExecutor::SlurmExecutor(SlurmConfig config, fs::path directory, std::vector<std::string> array_task, int threads,
+                             Note note)
+    : config_(std::move(config)),
+      directory_(std::move(directory)),
+      array_task_(std::move(array_task)),
+      threads_(threads),
+      note_(std::move(note)),
+      poll_(std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(config_.poll_s))),
+      recovered_(Steady::now()) {
+  recover();
+}
+
+std::size_t SlurmExecutor::open_tasks() const {
+  std::size_t n = 0;
+  for (const Batch& batch : batches_)
+    n += static_cast<std::size_t>(std::count_if(batch.tasks.begin(), batch.tasks.end(), [](const Task& task) {
+      return !task.over && std::any_of(task.entries.begin(), task.entries.end(),
+                                       [](const Entry& entry) { return entry.id != 0 && !entry.ended; });
+    }));
+  return n;
+}
+
+bool SlurmExecutor::has_room() const { return !stopping_ && unknown_ < pilots && load_ < config_.array_tasks; }
+
+void SlurmExecutor::weigh(const Run& run, bool waits) {
+  const std::optional<double> run_s = times_.of(run.group);
+  if (!run_s) ++unknown_;
+  if (waits) load_ += run_s ? std::min(1.0, *run_s / config_.task_s) : 1.0;
+}
+
+void SlurmExecutor::weigh_all() {
+  load_ = static_cast<double>(open_tasks());
+  unknown_ = 0;
+  for (const Entry& waiting : waiting_) weigh(waiting.run, true);
+  for (const auto& [id, place] : open_) weigh(entry(place).run, false);
+}
+
+RunId SlurmExecutor::start(const Run& run) {
+  const RunId id = ++last_;
+  const bool waits = !take_over(run, id);
+  if (waits) waiting_.push_back({.run = run, .id = id});
+  weigh(run, waits);
+  return id;
+}
+
+void SlurmExecutor::kill(RunId id) {
+  const auto waiting = std::find_if(waiting_.begin(), waiting_.end(), [&](const Entry& e) { return e.id == id; });
+  if (waiting != waiting_.end()) {
+    waiting_.erase(waiting);
+    ended_.push_back({.id = id, .end = {.signal = SIGKILL}});
+    return;
+  }
+  const auto at = open_.find(id);
+  if (at == open_.end()) return;
+  const Place place = at->second;
+  entry(place).killed = true;
+  place.batch->directory.want_killed(place.run);
+  Task& task = place.batch->tasks[place.run.task];
+  task.unwanted = std::all_of(task.entries.begin(), task.entries.end(),
+                              [](const Entry& e) { return e.ended || e.killed || e.id == 0; });
+}
+
+void SlurmExecutor::stop_all() {
+  stopping_ = true;
+  for (const Entry& entry : waiting_) ended_.push_back({.id = entry.id, .taken = true});
+  waiting_.clear();
+  for (Batch& batch : batches_)
+    for (Task& task : batch.tasks) task.unwanted = true;
+  next_look_ = next_cancel_ = {};
+}
+
+std::vector<Ended> SlurmExecutor::poll() {
+  end_calls();
+  if (Steady::now() >= next_look_) look();
+  return std::exchange(ended_, {});
+}
+
+/// The files first, then the verdict of a queue that was asked before they were read: a task that was over then has
+/// written all that it will.
+void SlurmExecutor::look() {
+  next_look_ = Steady::now() + poll_;
+  for (Batch& batch : batches_) collect(batch);
+  if (queue_) {
+    for (Batch& batch : batches_) judge(batch);
+    queue_.reset();
+  }
+  drop_unclaimed();
+  drop_finished();
+  cancel_unwanted();
+  submit();
+  ask_queue();
+  weigh_all();
+}
+
+/// Takes in the statuses that are new.
+void SlurmExecutor::collect(Batch& batch) {
+  for (const RunPlace place : batch.directory.statuses()) {
+    if (place.task >= batch.tasks.size() || place.position >= batch.tasks[place.task].entries.size()) continue;
+    Entry& entry = batch.tasks[place.task].entries[place.position];
+    if (entry.ended) continue;
+    try {
+      const RunStatus status = batch.directory.status(place);
+      if (status.end.exit_code == 0 && status.end.signal == 0) times_.ended(entry.run.group, status.seconds);
+      end(entry, {.end = status.end, .resumed = status.resumed, .timed_out = status.timed_out, .why = status.why});
+    } catch (const BatchError& e) {  // looked at again; if it stays so, the task is gone one day, and the run lost
+      if (!std::exchange(entry.told, true)) note_(e.what());
+    }
+  }
+}
+
+void SlurmExecutor::end(Entry& entry, Ended how) {
+  entry.ended = true;
+  if (entry.id == 0) {
+    unclaimed_.erase(entry.run.name);
+    return;
+  }
+  open_.erase(entry.id);
+  how.id = entry.id;
+  ended_.push_back(std::move(how));
+}
+
+/// Which tasks of a batch are gone, with runs that have no status.
+void SlurmExecutor::judge(Batch& batch) {
+  if (queue_begun_ <= batch.since) return;
+  if (!batch.job && &batch != submitting_) {  // ours died before it heard from sbatch
+    batch.job = queue_->job_named("talus-" + batch.directory.path().filename().string());
+    if (batch.job) batch.directory.write_job(*batch.job);
+  }
+  if (&batch == submitting_) return;
+  for (std::size_t i = 0; i < batch.tasks.size(); ++i) {
+    Task& task = batch.tasks[i];
+    if (task.over) continue;
+    const std::optional<QueuedTask> queued =
+        batch.job ? queue_->task(*batch.job, static_cast<std::int64_t>(i)) : std::nullopt;
+    const bool alive = queued && queued->alive;
+    task.missed = alive ? 0 : task.missed + 1;
+    if (!queued || !queued->running) {
+      task.running_since.reset();
+    } else {
+      if (!task.running_since) task.running_since = queue_begun_;
+      const std::chrono::duration<double> runs = queue_begun_ - *task.running_since;
+      times_.still_runs(task.entries.front().run.group, runs.count() / static_cast<double>(task.entries.size()));
+    }
+    if (task.missed >= misses) lose(batch, i, queued ? queued->state : batch.job ? "forgotten" : never_submitted);
+  }
+}
+
+/// The task is gone. Its first run without a status is the one it had begun; those behind it are as they were.
+void SlurmExecutor::lose(Batch& batch, std::size_t index, const std::string& state) {
+  bool begun = true;
+  Task& task = batch.tasks[index];
+  task.over = true;
+  for (Entry& entry : task.entries) {
+    if (entry.ended) continue;
+    if (entry.killed)
+      end(entry, {.end = {.signal = SIGKILL}});
+    else if (!begun || is_innocent(state))
+      end(entry, {.taken = true, .why = begun && state != "COMPLETED" ? "taken from its machine (Slurm: " + state + ")" : ""});
+    else
+      end(entry, {.end = {.signal = SIGKILL}, .why = "lost by Slurm (" + state + ")"});
+    begun = false;
+  }
+}
+
+void SlurmExecutor::drop_finished() {
+  for (auto batch = batches_.begin(); batch != batches_.end();) {
+    for (Task& task : batch->tasks)
+      task.over |= std::all_of(task.entries.begin(), task.entries.end(), [](const Entry& entry) { return entry.ended; });
+    const bool over =
+        std::all_of(batch->tasks.begin(), batch->tasks.end(), [](const Task& task) { return task.over; });
+    if (!over || &*batch == submitting_) {
+      ++batch;
+      continue;
+    }
+    std::error_code ignored;
+    fs::remove_all(batch->directory.path(), ignored);
+    batch = batches_.erase(batch);
+  }
+}
+
+}  // namespace talus::executor

@@ -1,0 +1,73 @@
+#pragma once
+// The runs of one array job, in a directory that all machines see:
+//
+//   I.json       the runs of array task I, one after the other
+//   I-P.status   how run P of it ended
+//   I-P.kill     run P is not wanted any more
+//   I.log        what the task said
+//   job          the number of the array job
+//
+// Every file appears whole, by rename. Who removes the directory takes the runs away from tasks that begin late.
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "executor/executor.hpp"
+
+namespace talus::executor {
+
+/// A file of a batch cannot be read, or says what it cannot say; the message names it.
+struct BatchError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// How a run ended on its machine.
+struct RunStatus {
+  ProcessEnd end = {};
+  double seconds = 0.0;  ///< wall clock of this process
+  bool resumed = false;
+  bool timed_out = false;
+  std::string why = {};  ///< where it could not even be started
+};
+
+/// A run of a batch by array task and place in it.
+struct RunPlace {
+  std::size_t task = 0, position = 0;
+  auto operator<=>(const RunPlace&) const = default;
+};
+
+class BatchDirectory {
+ public:
+  explicit BatchDirectory(std::filesystem::path path) : path_(std::move(path)) {}
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Creates it, with the runs of every array task. @throws ProcessError
+  void write(const std::vector<std::vector<Run>>& tasks) const;
+  /// The runs of an array task; nothing where there is no such file. @throws BatchError
+  std::optional<std::vector<Run>> runs(std::size_t task) const;
+
+  /// @throws ProcessError
+  void write_status(RunPlace run, const RunStatus& status) const;
+  bool has_status(RunPlace run) const;
+  /// @throws BatchError
+  RunStatus status(RunPlace run) const;
+  /// The runs that have a status, in order; none where there is no directory.
+  /// @throws ProcessError when it cannot be read
+  std::vector<RunPlace> statuses() const;
+
+  void want_killed(RunPlace run) const;
+  bool is_killed(RunPlace run) const;
+
+  void write_job(std::int64_t job) const;
+  /// Nothing where it is not there or not a number.
+  std::optional<std::int64_t> job() const;
+
+ private:
+  std::filesystem::path file(RunPlace run, const char* ending) const;
+  std::filesystem::path path_;
+};
+
+}  // namespace talus::executor

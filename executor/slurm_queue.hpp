@@ -1,0 +1,54 @@
+#pragma once
+// What Slurm's programs answer, looked over before it is believed.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+namespace talus::executor {
+
+/// An answer of Slurm that cannot be understood.
+struct SlurmAnswerError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// An array task as the queue has it.
+struct QueuedTask {
+  std::string state;     ///< Slurm's word: "PENDING", "NODE_FAIL"
+  bool alive = true;     ///< it waits, runs, or will
+  bool running = false;
+};
+
+/// The whole queue at one moment.
+class SlurmQueue {
+ public:
+  /// @param json  what `squeue --json` said, of Slurm 22.05 or newer
+  /// @throws SlurmAnswerError naming the place
+  explicit SlurmQueue(const std::string& json);
+
+  /// Nothing where Slurm does not know it: never submitted, or ended long ago.
+  std::optional<QueuedTask> task(std::int64_t array_job, std::int64_t index) const;
+  /// The array job of this name.
+  std::optional<std::int64_t> job_named(const std::string& name) const;
+
+ private:
+  struct Waiting {
+    QueuedTask task;
+    std::optional<std::set<std::int64_t>> indices;  ///< unset: all that have no record of their own
+  };
+  std::map<std::pair<std::int64_t, std::int64_t>, QueuedTask> tasks_;  ///< by array job and index
+  std::map<std::int64_t, Waiting> waiting_;                            ///< those that Slurm keeps together, by array job
+  std::map<std::string, std::int64_t> names_;
+};
+
+/// The job of sbatch's answer: "123" or "123;cluster".
+/// @throws SlurmAnswerError
+std::int64_t parse_job_id(const std::string& answer);
+
+/// "0-2,5,7-11:2%4" as numbers; nothing where it is cut short with dots or cannot be understood.
+std::optional<std::set<std::int64_t>> parse_indices(const std::string& text);
+
+}  // namespace talus::executor
