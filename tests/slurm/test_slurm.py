@@ -1,0 +1,306 @@
+#!/usr/bin/env python3
+"""Studies on a real Slurm that the test starts itself.  usage: test_slurm.py TALUSD SOURCE_DIR GROUP [test names]"""
+import csv
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "service"))
+from cluster import Cluster  # noqa: E402
+from daemon import TALUS, Daemon, case, digests, main  # noqa: E402
+
+REALIZATIONS, SEED = 14, 5
+CASE = case(spacing=0.4, end=4.0)  # two or three seconds a run
+OVER = ("successful", "failed")
+
+
+def books(directory):
+    """What a study says of itself, without what time it took."""
+    study = json.loads((directory / "study.json").read_text())
+    study["effort"].pop("wall_clock_s")
+    tables = []
+    for name in ("realizations.csv", "noise_floor.csv"):
+        with open(directory / name, newline="") as file:
+            tables.append([{k: v for k, v in row.items() if k != "wall_clock_s"} for row in csv.DictReader(file)])
+    return study, tables
+
+
+class SlurmTest(unittest.TestCase):
+    nodes, min_job_age = 2, 300
+
+    @classmethod
+    def setUpClass(cls):
+        for program in ("/usr/sbin/slurmctld", "/usr/sbin/slurmd", "/usr/sbin/munged"):
+            if not os.access(program, os.X_OK):
+                raise AssertionError(f"there is no {program}; deploy/install-packages.sh test")
+        cls.plain = pathlib.Path(tempfile.mkdtemp(prefix="talus-slurm-"))
+        cls.addClassCleanup(shutil.rmtree, cls.plain, ignore_errors=True)
+        (cls.plain / "case.json").write_text(json.dumps(CASE))
+        done = subprocess.run([*cls.study(cls.plain / "study"), "--workers", "2"], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+
+    @classmethod
+    def study(cls, out):
+        return [TALUS, "study", cls.plain / "case.json", "--out", out, "--realizations", str(REALIZATIONS), "--seed",
+                str(SEED), "--no-figures"]
+
+    def setUp(self):
+        self.dir = pathlib.Path(tempfile.mkdtemp(prefix="talus-slurm-"))
+        self.addCleanup(shutil.rmtree, self.dir, ignore_errors=True)
+        self.cluster = Cluster(self.dir / "cluster", self.nodes, min_job_age=self.min_job_age)
+        self.addCleanup(self.cluster.stop)
+        self.cluster.start()
+        self.configure()
+
+    def configure(self, **more):
+        (self.dir / "slurm.json").write_text(json.dumps({"partition": "batch", "poll_s": 0.25, **more}))
+
+    def squeue(self, *options):
+        return self.cluster.run("squeue", "-h", "-r", *options).split("\n")[:-1]
+
+    def running(self):
+        return self.squeue("-tR", "-o%A")
+
+
+class Studies(SlurmTest):
+    """talus study --executor slurm"""
+
+    def start(self):
+        self.log = open(self.dir / "log", "ab")
+        self.addCleanup(self.log.close)
+        self.process = subprocess.Popen(
+            [*self.study(self.dir / "study"), "--executor", "slurm", "--slurm", self.dir / "slurm.json"],
+            env=self.cluster.environment, stdout=subprocess.DEVNULL, stderr=self.log)
+        self.addCleanup(self.process.kill)
+
+    def said(self):
+        return (self.dir / "log").read_text()
+
+    def ended(self):
+        return len([p for p in (self.dir / "study/runs").glob("*.json")])
+
+    def begun(self):
+        """Waits until some realizations have ended and others run."""
+        self.cluster.wait("the study to be under way", lambda: self.process.poll() is not None or (self.ended() > 1 and self.running()))
+        self.assertIsNone(self.process.poll(), self.said())
+
+    def finishes(self, code=0, seconds=150):
+        try:
+            self.assertEqual(self.process.wait(seconds), code, self.said())
+        except subprocess.TimeoutExpired:
+            self.fail(f"the study does not end\n{self.said()}\n{self.squeue()}\n{self.cluster.logs()}")
+
+    def same_as_local(self):
+        self.assertEqual(books(self.dir / "study"), books(self.plain / "study"))
+        self.assertFalse((self.dir / "study/work").exists())
+
+    def test_the_same_as_local(self):
+        self.start()
+        self.finishes()
+        self.same_as_local()
+        self.assertNotIn("trying", self.said())
+
+    def test_a_lost_node(self):
+        self.start()
+        self.begun()
+        self.cluster.kill_node("n1")
+        self.finishes()
+        self.same_as_local()
+
+    def test_a_node_that_only_seems_lost(self):
+        """Its daemon is gone, what it had started runs on beside what Slurm starts elsewhere."""
+        self.start()
+        self.begun()
+        self.cluster.end(self.cluster.pid("slurmd-n1.pid"), signal.SIGKILL)
+        self.finishes()
+        self.same_as_local()
+
+    def test_preempted(self):
+        self.start()
+        self.begun()
+        self.cluster.run("sbatch", "--partition=urgent", "--nodes=2", f"--chdir={self.dir}", "--wrap=sleep 3")
+        self.cluster.wait("something to be requeued", lambda: "Requeue" in self.cluster.logs() or "requeue" in self.cluster.logs())
+        self.finishes()
+        self.same_as_local()
+
+    def test_cancelled_from_outside(self):
+        self.start()
+        self.begun()
+        self.cluster.run("scancel", "--partition=batch")
+        self.finishes()
+        self.same_as_local()
+        self.assertIn("lost by Slurm (CANCELLED)", self.said())
+
+    def test_cancelled_again_and_again(self):
+        """Who cancels often enough has their will: the realizations failed, and say why."""
+        self.start()
+        while self.process.poll() is None:
+            self.cluster.run("scancel", "--partition=batch", check=False)
+            time.sleep(0.1)
+        self.finishes(7)
+        failed = json.loads((self.dir / "study/study.json").read_text())["failures"]
+        self.assertTrue(failed)
+        self.assertIn("lost by Slurm (CANCELLED), 5 times", failed[0]["reason"])
+
+    def test_the_controller_is_away(self):
+        self.start()
+        self.begun()
+        self.cluster.stop_controller()
+        self.cluster.wait("the study to notice", lambda: "waiting for Slurm" in self.said())
+        time.sleep(5)
+        self.assertIsNone(self.process.poll(), self.said())
+        self.cluster.start_controller()
+        self.finishes()
+        self.same_as_local()
+        self.assertIn("Slurm answers again", self.said())
+
+    def test_killed_it_takes_over_what_runs_on(self):
+        self.start()
+        self.begun()
+        self.process.kill()
+        self.process.wait()
+        submitted = self.squeue("-tall", "-o%A")
+        self.assertTrue(self.running())
+        self.start()
+        self.finishes()
+        self.same_as_local()
+        self.assertGreaterEqual(len(submitted), len(self.squeue("-tPD,R", "-o%A")))
+
+    def test_stopped_it_cancels_and_goes_on(self):
+        self.start()
+        self.begun()
+        self.process.send_signal(signal.SIGTERM)
+        self.finishes(6)
+        self.assertEqual(self.squeue("-tPD,R"), [])
+        self.start()
+        self.finishes()
+        self.same_as_local()
+
+    def test_refused_by_slurm(self):
+        self.configure(partition="nowhere")
+        self.start()
+        self.finishes(5)
+        self.assertRegex(self.said(), "Slurm takes no runs: sbatch: .*[Ii]nvalid partition")
+
+    def test_a_bad_configuration(self):
+        self.configure(poll_s="often", partition="a b", sbatch_options=["--wait", "qos"], node="n1")
+        self.start()
+        self.finishes(2)
+        for fault in ("/poll_s is not a number", "/partition may hold", "--wait is set by Talus", "/sbatch_options/1", "/node is not a known key"):
+            self.assertIn(fault, self.said())
+
+
+class Forgotten(Studies):
+    """Slurm forgets a job soon after its end."""
+    min_job_age = 2
+
+    def test_a_job_that_slurm_forgot(self):
+        self.start()
+        self.begun()
+        self.process.kill()
+        self.process.wait()
+        self.cluster.run("scancel", "--partition=batch")
+        self.cluster.wait("Slurm to forget", lambda: json.loads(self.cluster.run("squeue", "--json"))["jobs"] == [], 120)
+        self.start()
+        self.finishes()
+        self.same_as_local()
+        self.assertIn("lost by Slurm (forgotten)", self.said())
+
+
+class TimeLimit(Studies):
+    """A minute an array task, and a run that takes longer."""
+
+    def test_checkpointed_and_resumed(self):
+        slow = case(spacing=0.15, end=6.0)
+        (self.dir / "slow.json").write_text(json.dumps(slow))
+        self.configure(time_limit_min=1)
+        command = [TALUS, "study", self.dir / "slow.json", "--realizations", "2", "--seed", "3", "--no-figures",
+                   "--set", "study.noise_floor_replicates=0"]
+        remote = subprocess.run([*command, "--out", self.dir / "study", "--executor", "slurm", "--slurm", self.dir / "slurm.json"],
+                                env=self.cluster.environment, capture_output=True, text=True, timeout=500)
+        self.assertEqual(remote.returncode, 0, remote.stderr + self.cluster.logs())
+        local = subprocess.run([*command, "--out", self.dir / "local", "--workers", "2"], capture_output=True, text=True, timeout=500)
+        self.assertEqual(local.returncode, 0, local.stderr)
+        self.assertEqual(books(self.dir / "study"), books(self.dir / "local"))
+        states = self.cluster.run("squeue", "-h", "-tall", "-o%K %T %M").strip()
+        print(states, remote.stderr)
+        self.assertGreater(len(states.split("\n")), 2, "no task was broken off by the limit: the run is too short for this test")
+
+
+class Service(SlurmTest):
+    """talusd --executor slurm"""
+    nodes = 3
+
+    def start(self, **more):
+        self.daemon = Daemon(self.dir / "data", "--executor", "slurm", "--slurm", self.dir / "slurm.json",
+                             environment=self.cluster.environment, **more)
+        self.addCleanup(lambda: self.daemon.process.poll() is None and self.daemon.kill())
+
+    def submit(self):
+        return self.daemon.submit({"inputs": {"case": CASE, "realizations": REALIZATIONS, "seed": SEED}})
+
+    def begun(self, job):
+        self.cluster.wait("the job to be under way", lambda: len(digests(self.dir / "data", job)) > 1 and self.running())
+
+    def finishes(self, job):
+        try:
+            info = self.daemon.wait_for(job, OVER, 150)
+        except AssertionError as e:
+            self.fail(f"{e}\n{self.daemon.said()}\n{self.squeue()}\n{self.cluster.logs()}")
+        self.assertEqual(info["status"], "successful", info)
+        return info
+
+    def same_as_local(self, job):
+        self.assertEqual(books(self.dir / "data/jobs" / job), books(self.plain / "study"))
+        histogram = self.daemon.get(f"/jobs/{job}/results").json["histogram"]["value"]["histogram"]
+        local = json.loads((self.plain / "study/study.json").read_text())["quantities"]["influence_zone_m"]["histogram"]
+        self.assertEqual(histogram["counts"], local["counts"])
+        self.assertEqual(histogram["edges"], local["edges"])
+
+    def test_survives_the_kill_of_a_node(self):
+        self.start()
+        job = self.submit()
+        self.begun(job)
+        self.cluster.kill_node("n2")
+        self.finishes(job)
+        self.same_as_local(job)
+
+    def test_killed_and_started_again(self):
+        self.start()
+        job = self.submit()
+        self.begun(job)
+        self.daemon.kill()
+        before = set(self.squeue("-tall", "-o%F"))
+        self.start()
+        self.finishes(job)
+        self.same_as_local(job)
+        self.assertTrue(before)
+
+    def test_stopped_it_leaves_the_array_running(self):
+        self.start()
+        job = self.submit()
+        self.begun(job)
+        self.assertEqual(self.daemon.stop(), 0)
+        self.assertTrue(self.running())
+        self.start()
+        self.finishes(job)
+        self.same_as_local(job)
+
+    def test_a_dismissed_job_is_cancelled(self):
+        self.start()
+        job = self.submit()
+        self.begun(job)
+        self.daemon.request("DELETE", f"/jobs/{job}")
+        self.cluster.wait("its tasks to be gone", lambda: not self.squeue("-tPD,R"))
+        self.cluster.wait("its directory to be gone", lambda: not (self.dir / "data/jobs" / job).exists())
+
+
+if __name__ == "__main__":
+    main({"Studies": Studies, "Forgotten": Forgotten, "TimeLimit": TimeLimit, "Service": Service})
