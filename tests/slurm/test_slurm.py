@@ -69,9 +69,7 @@ class SlurmTest(unittest.TestCase):
         return self.squeue("-tR", "-o%A")
 
 
-class Studies(SlurmTest):
-    """talus study --executor slurm"""
-
+class StudyTest(SlurmTest):
     def start(self):
         self.log = open(self.dir / "log", "ab")
         self.addCleanup(self.log.close)
@@ -100,6 +98,10 @@ class Studies(SlurmTest):
     def same_as_local(self):
         self.assertEqual(books(self.dir / "study"), books(self.plain / "study"))
         self.assertFalse((self.dir / "study/work").exists())
+
+
+class Studies(StudyTest):
+    """talus study --executor slurm"""
 
     def test_the_same_as_local(self):
         self.start()
@@ -197,7 +199,7 @@ class Studies(SlurmTest):
             self.assertIn(fault, self.said())
 
 
-class Forgotten(Studies):
+class Forgotten(StudyTest):
     """Slurm forgets a job soon after its end."""
     min_job_age = 2
 
@@ -214,7 +216,7 @@ class Forgotten(Studies):
         self.assertIn("lost by Slurm (forgotten)", self.said())
 
 
-class TimeLimit(Studies):
+class TimeLimit(StudyTest):
     """A minute an array task, and a run that takes longer."""
 
     def test_checkpointed_and_resumed(self):
