@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
+constexpr const char* script_text = "#!/bin/sh\nexec \"$@\"\n";
 constexpr std::uintmax_t max_bytes = std::uintmax_t{256} << 20;
 
 [[noreturn]] void fail(const std::string& doing, const fs::path& path, int error) {
@@ -120,6 +121,7 @@ void BatchDirectory::write(const std::vector<std::vector<Run>>& tasks) const {
   std::error_code error;
   fs::create_directories(path_, error);
   if (error) fail("create", path_, error.value());
+  write_whole(script(), script_text);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     Json runs = Json::array();
     for (const Run& run : tasks[i]) runs.push_back(to_json(run));

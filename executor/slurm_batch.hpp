@@ -1,6 +1,7 @@
 #pragma once
 // The runs of one array job, in a directory that all machines see:
 //
+//   task.sh      the job script: executes its arguments
 //   I.json       the runs of array task I, one after the other
 //   I-P.status   how run P of it ended
 //   I-P.kill     run P is not wanted any more
@@ -44,7 +45,8 @@ class BatchDirectory {
   explicit BatchDirectory(std::filesystem::path path) : path_(std::move(path)) {}
   const std::filesystem::path& path() const { return path_; }
 
-  /// Creates it, with the runs of every array task. @throws ProcessError
+  std::filesystem::path script() const { return path_ / "task.sh"; }
+  /// Creates it, with the script and the runs of every array task. @throws ProcessError
   void write(const std::vector<std::vector<Run>>& tasks) const;
   /// The runs of an array task; nothing where there is no such file. @throws BatchError
   std::optional<std::vector<Run>> runs(std::size_t task) const;

@@ -26,7 +26,6 @@ constexpr std::size_t max_answer = std::size_t{1} << 30;
 constexpr int most_refusals = 3;
 constexpr std::size_t most_tasks = 1000;  ///< of an array job; Slurm's own default allows 1001
 constexpr std::size_t most_runs = 5000;   ///< of an array job, so that its directory stays quick to read
-constexpr const char* script = "#!/bin/sh\nexec \"$@\"\n";
 
 /// What Slurm's programs, and through them the runs, get of our environment.
 std::vector<std::string> environment() {
@@ -185,7 +184,7 @@ std::vector<std::string> SlurmExecutor::sbatch_arguments(const BatchDirectory& b
   if (!config_.account.empty()) all.push_back("--account=" + config_.account);
   if (config_.memory_MiB > 0) all.push_back("--mem=" + std::to_string(config_.memory_MiB) + "M");
   all.insert(all.end(), config_.sbatch_options.begin(), config_.sbatch_options.end());
-  all.push_back((batch.path() / "task.sh").string());
+  all.push_back(batch.script().string());
   all.insert(all.end(), array_task_.begin(), array_task_.end());
   all.push_back(batch.path().string());
   return all;
@@ -207,10 +206,8 @@ void SlurmExecutor::submit() {
   }
   try {
     batch.directory.write(runs);
-    std::ofstream(batch.directory.path() / "task.sh") << script;
     sbatch_.emplace(call(sbatch_arguments(batch.directory, runs.size())));
   } catch (const ProcessError& e) {
-    answered_since_ = true;  // it is not the controller that is away
     not_submitted(e.what());
   }
   next_submit_ = std::max(next_submit_, Steady::now() + poll_);
