@@ -221,16 +221,16 @@ class TimeLimit(StudyTest):
     """A minute an array task, and a run that takes longer."""
 
     def test_checkpointed_and_resumed(self):
-        (self.dir / "slow.json").write_text(json.dumps(case(spacing=0.15, end=self.end_after(80))))
+        (self.dir / "slow.json").write_text(json.dumps(case(spacing=0.15, end=self.end_after(60))))
         self.configure(time_limit_min=1)
         command = [TALUS, "study", self.dir / "slow.json", "--realizations", "2", "--seed", "3", "--no-figures",
                    "--set", "study.noise_floor_replicates=0", "--set", "numerics.precision=double"]
         remote = subprocess.run([*command, "--out", self.dir / "study", "--executor", "slurm", "--slurm", self.dir / "slurm.json"],
-                                env=self.cluster.environment, capture_output=True, text=True, timeout=500)
+                                env=self.cluster.environment, capture_output=True, text=True, timeout=900)
         self.assertEqual(remote.returncode, 0, remote.stderr + self.cluster.logs())
         tasks = self.squeue("-tall", "-o%F_%K %T %M")
         self.assertGreater(len(tasks), 2, f"no task was broken off by the limit: {tasks}")
-        local = subprocess.run([*command, "--out", self.dir / "local", "--workers", "2"], capture_output=True, text=True, timeout=500)
+        local = subprocess.run([*command, "--out", self.dir / "local", "--workers", "2"], capture_output=True, text=True, timeout=900)
         self.assertEqual(local.returncode, 0, local.stderr)
         self.assertEqual(books(self.dir / "study"), books(self.dir / "local"))
 
