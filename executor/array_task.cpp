@@ -54,16 +54,15 @@ class ArrayTask {
     for (std::size_t position = 0; position < runs.size() && !signals_.asked_to_stop(); ++position) {
       const RunPlace place{index_, position};
       if (batch_.has_status(place)) continue;
-      const RunStatus status = batch_.is_killed(place) ? RunStatus{.end = {.signal = SIGKILL}} : outcome(runs[position], place);
+      const RunStatus status =
+          batch_.is_killed(place) ? RunStatus{.end = {.signal = SIGKILL}} : outcome(runs[position], place);
       if (signals_.asked_to_stop() && broke_off(status.end)) return;
       batch_.write_status(place, status);
     }
   }
 
  private:
-  RunStatus outcome(const Run& run, RunPlace place) try {
-    return execute(run, place);
-  } catch (const ProcessError& e) {
+  RunStatus outcome(const Run& run, RunPlace place) try { return execute(run, place); } catch (const ProcessError& e) {
     return {.end = {.exit_code = io_exit}, .why = e.what()};
   }
 
@@ -77,8 +76,8 @@ class ArrayTask {
     for (std::optional<ProcessEnd> end; !(end = process.poll());) {
       signals_.wait();
       if (signals_.asked_to_stop() && !std::exchange(told, true)) process.signal(SIGTERM);
-      status.timed_out |= command.limits.wall_seconds > 0 &&
-                          seconds_since(begin) > static_cast<double>(command.limits.wall_seconds);
+      status.timed_out |=
+          command.limits.wall_seconds > 0 && seconds_since(begin) > static_cast<double>(command.limits.wall_seconds);
       if (status.timed_out || batch_.is_killed(place)) process.signal(SIGKILL);
     }
     status.end = *process.poll();

@@ -181,7 +181,8 @@ void SlurmExecutor::lose(Batch& batch, std::size_t index, const std::string& sta
     if (entry.killed)
       end(entry, {.end = {.signal = SIGKILL}});
     else if (!begun || is_innocent(state))
-      end(entry, {.taken = true, .why = begun && state != "COMPLETED" ? "taken from its machine (Slurm: " + state + ")" : ""});
+      end(entry,
+          {.taken = true, .why = begun && state != "COMPLETED" ? "taken from its machine (Slurm: " + state + ")" : ""});
     else
       end(entry, {.end = {.signal = SIGKILL}, .why = "lost by Slurm (" + state + ")"});
     begun = false;
@@ -191,9 +192,9 @@ void SlurmExecutor::lose(Batch& batch, std::size_t index, const std::string& sta
 void SlurmExecutor::drop_finished() {
   for (auto batch = batches_.begin(); batch != batches_.end();) {
     for (Task& task : batch->tasks)
-      task.over |= std::all_of(task.entries.begin(), task.entries.end(), [](const Entry& entry) { return entry.ended; });
-    const bool over =
-        std::all_of(batch->tasks.begin(), batch->tasks.end(), [](const Task& task) { return task.over; });
+      task.over |=
+          std::all_of(task.entries.begin(), task.entries.end(), [](const Entry& entry) { return entry.ended; });
+    const bool over = std::all_of(batch->tasks.begin(), batch->tasks.end(), [](const Task& task) { return task.over; });
     if (!over || &*batch == submitting_) {
       ++batch;
       continue;

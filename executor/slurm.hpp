@@ -1,6 +1,6 @@
 #pragma once
-// Runs as array jobs of Slurm. We write no scheduler: Slurm decides where and when, starts again what a lost or preempted
-// machine held, and ends what takes too long.
+// Runs as array jobs of Slurm. We write no scheduler: Slurm decides where and when, starts again what a lost or
+// preempted machine held, and ends what takes too long.
 //
 // Runs wait here until the next look, then go out as one array job, each task with a chunk of them. Their ends come
 // back as status files on the shared directory; the queue (one squeue for all) is asked only which tasks are still to
@@ -52,7 +52,7 @@ class SlurmExecutor final : public Executor {
     std::vector<Entry> entries;
     int missed = 0;  ///< looks at the queue that did not find it
     std::optional<Steady::time_point> running_since = {};
-    bool over = false;    ///< nothing more is to come from it
+    bool over = false;  ///< nothing more is to come from it
     bool unwanted = false;
   };
   struct Batch {
@@ -122,9 +122,9 @@ class SlurmExecutor final : public Executor {
   Batch* submitting_ = nullptr;      ///< what sbatch_ is about
   std::optional<SlurmQueue> queue_;  ///< not looked at yet
   Steady::time_point queue_begun_{}, next_look_{}, next_queue_{}, next_submit_{}, next_cancel_{};
-  int refusals_ = 0;               ///< of sbatch, one after the other
-  bool answered_since_ = false;    ///< squeue worked since the first of them
-  bool away_ = false;              ///< squeue does not work
+  int refusals_ = 0;             ///< of sbatch, one after the other
+  bool answered_since_ = false;  ///< squeue worked since the first of them
+  bool away_ = false;            ///< squeue does not work
   bool stopping_ = false;
 };
 

@@ -143,9 +143,8 @@ std::optional<std::vector<Run>> BatchDirectory::runs(std::size_t task) const {
 }
 
 void BatchDirectory::write_status(RunPlace run, const RunStatus& status) const {
-  const Json json = {{"exit_code", status.end.exit_code}, {"signal", status.end.signal},
-                     {"seconds", status.seconds},         {"resumed", status.resumed},
-                     {"timed_out", status.timed_out},     {"why", status.why}};
+  const Json json = {{"exit_code", status.end.exit_code}, {"signal", status.end.signal},   {"seconds", status.seconds},
+                     {"resumed", status.resumed},         {"timed_out", status.timed_out}, {"why", status.why}};
   write_whole(file(run, ".status"), json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

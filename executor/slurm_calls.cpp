@@ -29,7 +29,8 @@ constexpr std::size_t most_runs = 5000;   ///< of an array job, so that its dire
 
 /// What Slurm's programs, and through them the runs, get of our environment.
 std::vector<std::string> environment() {
-  constexpr std::array exact{"PATH", "HOME", "USER", "LOGNAME", "LANG", "LC_ALL", "TZ", "SLURM_CONF", "LD_LIBRARY_PATH", "TALUS_SIMD"};
+  constexpr std::array exact{"PATH",   "HOME", "USER",       "LOGNAME",         "LANG",
+                             "LC_ALL", "TZ",   "SLURM_CONF", "LD_LIBRARY_PATH", "TALUS_SIMD"};
   std::vector<std::string> all;
   for (char** variable = environ; *variable; ++variable) {
     const std::string text = *variable, name = text.substr(0, text.find('='));
@@ -52,7 +53,8 @@ std::string batch_name() {
   static int counter = 0;
   std::random_device entropy;
   char text[64];
-  std::snprintf(text, sizeof text, "%012llx-%04x-%08x", static_cast<unsigned long long>(std::time(nullptr)), counter++ & 0xffff, entropy());
+  std::snprintf(text, sizeof text, "%012llx-%04x-%08x", static_cast<unsigned long long>(std::time(nullptr)),
+                counter++ & 0xffff, entropy());
   return text;
 }
 
@@ -167,19 +169,20 @@ std::vector<std::vector<SlurmExecutor::Entry>> SlurmExecutor::next_tasks(std::si
 
 std::vector<std::string> SlurmExecutor::sbatch_arguments(const BatchDirectory& batch, std::size_t tasks) const {
   const int margin_s = std::min(60, 20 * config_.time_limit_min);  // for a checkpoint
-  std::vector<std::string> all{"sbatch",
-                               "--parsable",
-                               "--array=0-" + std::to_string(tasks - 1),
-                               "--job-name=talus-" + batch.path().filename().string(),
-                               "--chdir=" + batch.path().string(),
-                               "--output=%a.log",
-                               "--open-mode=append",
-                               "--requeue",
-                               "--signal=B:TERM@" + std::to_string(margin_s),
-                               "--time=" + std::to_string(config_.time_limit_min),
-                               "--nodes=1",
-                               "--ntasks=1",
-                               "--cpus-per-task=" + std::to_string(config_.cpus_per_task > 0 ? config_.cpus_per_task : threads_)};
+  std::vector<std::string> all{
+      "sbatch",
+      "--parsable",
+      "--array=0-" + std::to_string(tasks - 1),
+      "--job-name=talus-" + batch.path().filename().string(),
+      "--chdir=" + batch.path().string(),
+      "--output=%a.log",
+      "--open-mode=append",
+      "--requeue",
+      "--signal=B:TERM@" + std::to_string(margin_s),
+      "--time=" + std::to_string(config_.time_limit_min),
+      "--nodes=1",
+      "--ntasks=1",
+      "--cpus-per-task=" + std::to_string(config_.cpus_per_task > 0 ? config_.cpus_per_task : threads_)};
   if (!config_.partition.empty()) all.push_back("--partition=" + config_.partition);
   if (!config_.account.empty()) all.push_back("--account=" + config_.account);
   if (config_.memory_MiB > 0) all.push_back("--mem=" + std::to_string(config_.memory_MiB) + "M");

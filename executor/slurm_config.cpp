@@ -12,9 +12,10 @@ namespace {
 using Json = nlohmann::json;
 
 /// What we say to sbatch ourselves.
-constexpr std::array ours{"--array",   "-a", "--chdir",    "-D", "--cpus-per-task", "-c", "--error",   "-e", "--export", "--job-name",
-                          "-J",        "-o", "--output",   "-W", "--open-mode",     "-n", "--ntasks",  "-N", "--nodes",  "--parsable",
-                          "--requeue", "--signal", "--wait", "--wrap", "--no-requeue"};
+constexpr std::array ours{
+    "--array",   "-a",       "--chdir",  "-D",     "--cpus-per-task", "-c", "--error",  "-e", "--export", "--job-name",
+    "-J",        "-o",       "--output", "-W",     "--open-mode",     "-n", "--ntasks", "-N", "--nodes",  "--parsable",
+    "--requeue", "--signal", "--wait",   "--wrap", "--no-requeue"};
 
 /// The members of one object, each looked at once; what is left over is a fault.
 class Reader {
@@ -29,7 +30,8 @@ class Reader {
     if (value.is_null()) return;
     if (!value.is_string()) return fault(key, "is not a text");
     into = value.get<std::string>();
-    if (into.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.,") != std::string::npos)
+    if (into.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.,") !=
+        std::string::npos)
       fault(key, "may hold letters, digits and _-., only");
   }
   template <class T>

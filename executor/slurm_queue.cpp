@@ -14,7 +14,7 @@ using Json = nlohmann::json;
 constexpr std::int64_t most_tasks = 4'000'000;  ///< of one array in Slurm
 
 /// States that a job does not leave by itself.
-constexpr std::array over{"COMPLETED", "FAILED",   "CANCELLED",     "TIMEOUT", "NODE_FAIL",
+constexpr std::array over{"COMPLETED", "FAILED",   "CANCELLED",     "TIMEOUT",  "NODE_FAIL",
                           "PREEMPTED", "DEADLINE", "OUT_OF_MEMORY", "BOOT_FAIL"};
 /// Words that stand beside a state and say that the job is not over after all.
 constexpr std::array not_yet{"COMPLETING", "REQUEUED", "REQUEUE_HOLD", "REQUEUE_FED", "SPECIAL_EXIT"};
@@ -52,9 +52,7 @@ QueuedTask state(const Json& job, const std::string& place) {
   const auto has = [&](const auto& list) {
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return is_in(list, word); });
   };
-  return {.state = words.front(),
-          .alive = !has(over) || has(not_yet),
-          .running = is_in(words, std::string("RUNNING"))};
+  return {.state = words.front(), .alive = !has(over) || has(not_yet), .running = is_in(words, std::string("RUNNING"))};
 }
 
 std::string text(const Json& job, const char* key) {

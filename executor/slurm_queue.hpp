@@ -17,8 +17,8 @@ struct SlurmAnswerError : std::runtime_error {
 
 /// An array task as the queue has it.
 struct QueuedTask {
-  std::string state;     ///< Slurm's word: "PENDING", "NODE_FAIL"
-  bool alive = true;     ///< it waits, runs, or will
+  std::string state;  ///< Slurm's word: "PENDING", "NODE_FAIL"
+  bool alive = true;  ///< it waits, runs, or will
   bool running = false;
 };
 
@@ -40,7 +40,7 @@ class SlurmQueue {
     std::optional<std::set<std::int64_t>> indices;  ///< unset: all that have no record of their own
   };
   std::map<std::pair<std::int64_t, std::int64_t>, QueuedTask> tasks_;  ///< by array job and index
-  std::map<std::int64_t, Waiting> waiting_;                            ///< those that Slurm keeps together, by array job
+  std::map<std::int64_t, Waiting> waiting_;  ///< those that Slurm keeps together, by array job
   std::map<std::string, std::int64_t> names_;
 };
 

@@ -62,8 +62,8 @@ void SlurmExecutor::drop_unclaimed() {
   for (const auto& [name, place] : unclaimed_) {
     entry(place).killed = true;
     Task& task = place.batch->tasks[place.run.task];
-    task.unwanted = std::none_of(task.entries.begin(), task.entries.end(),
-                                 [](const Entry& e) { return e.id != 0 && !e.ended; });
+    task.unwanted =
+        std::none_of(task.entries.begin(), task.entries.end(), [](const Entry& e) { return e.id != 0 && !e.ended; });
   }
   unclaimed_.clear();
 }

@@ -1,10 +1,11 @@
 // talus array-task: what `--executor slurm` lets Slurm start on its machines.
 
+#include "executor/array_task.hpp"
+
 #include <filesystem>
 #include <memory>
 
 #include "cli/verbs.hpp"
-#include "executor/array_task.hpp"
 #include "math/error.hpp"
 
 namespace talus::cli {

@@ -29,7 +29,10 @@ struct Fixture {
   void add(const std::string& script, std::uint64_t wall_seconds = 0) {
     const std::string name = std::to_string(runs.size());
     fs::create_directories(directory / name);
-    runs.push_back({.name = name, .group = "g", .command = {.arguments = {"/bin/sh", "-c", script, "sh"}}, .directory = directory / name,
+    runs.push_back({.name = name,
+                    .group = "g",
+                    .command = {.arguments = {"/bin/sh", "-c", script, "sh"}},
+                    .directory = directory / name,
                     .log = directory / (name + ".log")});
     runs.back().command.limits.wall_seconds = wall_seconds;
   }

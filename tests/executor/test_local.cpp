@@ -16,8 +16,11 @@ namespace {
 
 Run shell(const TemporaryDirectory& directory, const std::string& name, const std::string& script) {
   std::filesystem::create_directories(directory / name);
-  return {.name = name, .group = "g", .command = {.arguments = {"/bin/sh", "-c", script, "sh"}},
-          .directory = directory / name, .log = directory / (name + ".log")};
+  return {.name = name,
+          .group = "g",
+          .command = {.arguments = {"/bin/sh", "-c", script, "sh"}},
+          .directory = directory / name,
+          .log = directory / (name + ".log")};
 }
 
 Ended next(LocalExecutor& executor) {

@@ -71,10 +71,11 @@ TEST(Process, WhatCannotBeStartedIsNamed) {
 TEST(Process, HasOnlyTheEnvironmentAndTheLimitsGiven) {
   const TemporaryDirectory directory;
   const auto out = directory.path() / "out", err = directory.path() / "err";
-  Process process({.arguments = {"sh", "-c", "sleep 0.05; env | grep -v -E '^(PWD|_|SHLVL)='; ulimit -f; ulimit -c; echo err >&2"},
-                   .environment = std::vector<std::string>{"A=1", "PATH=/usr/bin:/bin"},
-                   .limits = {.file_bytes = 1 << 20, .core_dumps = false}},
-                  out, err);
+  Process process(
+      {.arguments = {"sh", "-c", "sleep 0.05; env | grep -v -E '^(PWD|_|SHLVL)='; ulimit -f; ulimit -c; echo err >&2"},
+       .environment = std::vector<std::string>{"A=1", "PATH=/usr/bin:/bin"},
+       .limits = {.file_bytes = 1 << 20, .core_dumps = false}},
+      out, err);
   EXPECT_EQ(wait_for(process).exit_code, 0);
   EXPECT_EQ(content(out), "A=1\nPATH=/usr/bin:/bin\n" + std::to_string((1 << 20) / 512) + "\n0\n");
   EXPECT_EQ(content(err), "err\n");

@@ -22,8 +22,10 @@ namespace {
 class Slurm : public testing::Test {
  protected:
   Slurm() {
-    program("sbatch", "[ -e refuse ] && { echo 'sbatch: error: no such partition' >&2; exit 1; }\n"
-                      "for last; do :; done; echo \"$last\" > batch; printf '%s\\n' \"$@\" > arguments; echo call >> calls; echo 41");
+    program(
+        "sbatch",
+        "[ -e refuse ] && { echo 'sbatch: error: no such partition' >&2; exit 1; }\n"
+        "for last; do :; done; echo \"$last\" > batch; printf '%s\\n' \"$@\" > arguments; echo call >> calls; echo 41");
     program("squeue", "cat queue.json || exit 1");
     program("scancel", "echo \"$@\" >> cancelled");
     ::setenv("PATH", (fake.path().string() + ":/usr/bin:/bin").c_str(), 1);
@@ -40,7 +42,8 @@ class Slurm : public testing::Test {
     fs::rename(fake / "new.json", fake / "queue.json");
   }
   void state(const std::string& word) {
-    queue(R"({"array_job_id": 41, "array_task_id": 0, "name": "talus-)" + batch().path().filename().string() + R"(", "job_state": ")" + word + "\"}");
+    queue(R"({"array_job_id": 41, "array_task_id": 0, "name": "talus-)" + batch().path().filename().string() +
+          R"(", "job_state": ")" + word + "\"}");
   }
   void make() {
     executor.reset();
@@ -48,7 +51,10 @@ class Slurm : public testing::Test {
                      [this](const std::string& text) { notes += text + "\n"; });
   }
   RunId start(const std::string& name) {
-    return executor->start({.name = name, .group = "g", .command = {.arguments = {"/opt/talus", "run"}}, .directory = directory / name,
+    return executor->start({.name = name,
+                            .group = "g",
+                            .command = {.arguments = {"/opt/talus", "run"}},
+                            .directory = directory / name,
                             .log = directory / (name + ".log")});
   }
   BatchDirectory batch() const {
@@ -91,8 +97,9 @@ TEST_F(Slurm, SubmitsAnArrayAndTellsHowItsRunsEnd) {
   until_submitted();
   state("RUNNING");
   const std::string said = content(fake / "arguments");
-  for (const char* argument : {"--parsable\n", "--array=0-1\n", "--requeue\n", "--signal=B:TERM@60\n", "--cpus-per-task=3\n", "--partition=long\n",
-                               "--qos=low\n", "task.sh\n/opt/talus\narray-task\n"})
+  for (const char* argument :
+       {"--parsable\n", "--array=0-1\n", "--requeue\n", "--signal=B:TERM@60\n", "--cpus-per-task=3\n",
+        "--partition=long\n", "--qos=low\n", "task.sh\n/opt/talus\narray-task\n"})
     EXPECT_NE(said.find(argument), std::string::npos) << argument << said;
   EXPECT_EQ(said.find("--account"), std::string::npos);
   const BatchDirectory files = batch();
@@ -112,8 +119,12 @@ TEST_F(Slurm, SubmitsAnArrayAndTellsHowItsRunsEnd) {
 }
 
 TEST_F(Slurm, ALostNodeIsNotTheRunsFaultAndACancelledTaskMayBe) {
-  for (const auto& [word, taken] : std::map<std::string, bool>{
-           {"NODE_FAIL", true}, {"PREEMPTED", true}, {"COMPLETED", true}, {"CANCELLED", false}, {"TIMEOUT", false}, {"OUT_OF_MEMORY", false}}) {
+  for (const auto& [word, taken] : std::map<std::string, bool>{{"NODE_FAIL", true},
+                                                               {"PREEMPTED", true},
+                                                               {"COMPLETED", true},
+                                                               {"CANCELLED", false},
+                                                               {"TIMEOUT", false},
+                                                               {"OUT_OF_MEMORY", false}}) {
     ended.clear();
     fs::remove(fake / "batch");
     queue(R"({"array_job_id": 41, "array_task_id": 0, "job_state": "PENDING"})");

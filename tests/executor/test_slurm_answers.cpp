@@ -66,7 +66,8 @@ TEST(SlurmQueue, ReadsLaterVersions) {
 }
 
 TEST(SlurmQueue, AStateThatNobodyKnowsIsNotAnEnd) {
-  EXPECT_TRUE(SlurmQueue(queue(R"({"array_job_id": 7, "array_task_id": 0, "job_state": "TELEPORTING"})")).task(7, 0)->alive);
+  EXPECT_TRUE(
+      SlurmQueue(queue(R"({"array_job_id": 7, "array_task_id": 0, "job_state": "TELEPORTING"})")).task(7, 0)->alive);
 }
 
 TEST(SlurmQueue, NamesThePlaceOfWhatItCannotRead) {
@@ -76,17 +77,22 @@ TEST(SlurmQueue, NamesThePlaceOfWhatItCannotRead) {
   EXPECT_NE(what_fails(queue("3")).find("/jobs/0 is not an object"), std::string::npos);
   EXPECT_NE(what_fails(queue(R"({"array_job_id": "7"})")).find("/jobs/0/array_job_id"), std::string::npos);
   EXPECT_NE(what_fails(queue(R"({"array_job_id": {"set": true}})")).find("/jobs/0/array_job_id"), std::string::npos);
-  EXPECT_NE(what_fails(queue(R"({"array_job_id": 7, "array_task_id": -1, "job_state": "RUNNING"})")).find("array_task_id"), std::string::npos);
+  EXPECT_NE(
+      what_fails(queue(R"({"array_job_id": 7, "array_task_id": -1, "job_state": "RUNNING"})")).find("array_task_id"),
+      std::string::npos);
   for (const char* state : {"null", "[]", "[3]", "3"}) {
-    const std::string json = queue(R"({"array_job_id": 7, "array_task_id": 1, "job_state": )" + std::string(state) + "}");
+    const std::string json =
+        queue(R"({"array_job_id": 7, "array_task_id": 1, "job_state": )" + std::string(state) + "}");
     EXPECT_NE(what_fails(json).find("job_state"), std::string::npos) << state;
   }
-  EXPECT_NE(what_fails(R"({"errors": [{"error": "Unable to contact slurm controller"}], "jobs": []})").find("Unable"), std::string::npos);
+  EXPECT_NE(what_fails(R"({"errors": [{"error": "Unable to contact slurm controller"}], "jobs": []})").find("Unable"),
+            std::string::npos);
 }
 
 TEST(SlurmQueue, Indices) {
   EXPECT_EQ(*parse_indices("0-2,5,7-11:2%4"), (std::set<std::int64_t>{0, 1, 2, 5, 7, 9, 11}));
-  for (const char* bad : {"", "1,", "1,...", "3-1", "1-2:0", "a", "-1", "0-99999999999", "1-2-3"}) EXPECT_FALSE(parse_indices(bad)) << bad;
+  for (const char* bad : {"", "1,", "1,...", "3-1", "1-2:0", "a", "-1", "0-99999999999", "1-2-3"})
+    EXPECT_FALSE(parse_indices(bad)) << bad;
 }
 
 TEST(SlurmAnswer, TheNumberOfTheJob) {
@@ -97,18 +103,22 @@ TEST(SlurmAnswer, TheNumberOfTheJob) {
 }
 
 TEST(SlurmConfig, EveryFaultAtOnce) {
-  const SlurmConfig c = parse_slurm_config(R"({"partition": "long", "memory_MiB": 2000, "sbatch_options": ["--qos=low", "-C", "--constraint=a&b"]})", "f");
+  const SlurmConfig c = parse_slurm_config(
+      R"({"partition": "long", "memory_MiB": 2000, "sbatch_options": ["--qos=low", "-C", "--constraint=a&b"]})", "f");
   EXPECT_EQ(c.partition, "long");
   EXPECT_EQ(c.memory_MiB, 2000);
   EXPECT_EQ(c.time_limit_min, 60);
   EXPECT_EQ(c.sbatch_options.size(), 3u);
   const std::string faults = message<SlurmConfigError>([] {
-    parse_slurm_config(R"({"partition": "a;b", "account": 3, "time_limit_min": 0, "task_s": null, "cpus_per_task": 1.5, "sbatch": [],
-                           "sbatch_options": ["--array=1", "-W", "-o/x", "qos", 4]})", "slurm.json");
+    parse_slurm_config(
+        R"({"partition": "a;b", "account": 3, "time_limit_min": 0, "task_s": null, "cpus_per_task": 1.5, "sbatch": [],
+                           "sbatch_options": ["--array=1", "-W", "-o/x", "qos", 4]})",
+        "slurm.json");
   });
-  for (const char* fault : {"slurm.json: /partition may", "/account is not a text", "/time_limit_min is not an integer", "/task_s is null",
-                            "/cpus_per_task is not an integer", "/sbatch is not a known key", "/sbatch_options/0 --array", "/sbatch_options/1 -W",
-                            "/sbatch_options/2 -o", "/sbatch_options/3 is not", "/sbatch_options/4 is not"})
+  for (const char* fault :
+       {"slurm.json: /partition may", "/account is not a text", "/time_limit_min is not an integer", "/task_s is null",
+        "/cpus_per_task is not an integer", "/sbatch is not a known key", "/sbatch_options/0 --array",
+        "/sbatch_options/1 -W", "/sbatch_options/2 -o", "/sbatch_options/3 is not", "/sbatch_options/4 is not"})
     EXPECT_NE(faults.find(fault), std::string::npos) << fault << "\n" << faults;
   EXPECT_THROW(parse_slurm_config("[", "f"), SlurmConfigError);
   EXPECT_THROW(parse_slurm_config("[]", "f"), SlurmConfigError);
@@ -118,10 +128,15 @@ TEST(SlurmConfig, EveryFaultAtOnce) {
 TEST(Batch, SaysWhatItWasTold) {
   const TemporaryDirectory directory;
   const BatchDirectory batch(directory / "batch");
-  talus::executor::Run run{.name = "j/000001", .group = "j", .command = {.arguments = {"/bin/talus", "run"}}, .directory = "/d", .log = "/d.log"};
+  talus::executor::Run run{.name = "j/000001",
+                           .group = "j",
+                           .command = {.arguments = {"/bin/talus", "run"}},
+                           .directory = "/d",
+                           .log = "/d.log"};
   talus::executor::Run limited = run;
   limited.command.environment = std::vector<std::string>{"A=1"};
-  limited.command.limits = {.memory_bytes = 1, .cpu_seconds = 2, .file_bytes = 3, .wall_seconds = 4, .core_dumps = false};
+  limited.command.limits = {
+      .memory_bytes = 1, .cpu_seconds = 2, .file_bytes = 3, .wall_seconds = 4, .core_dumps = false};
   limited.command.niceness = 5;
   batch.write({{run}, {run, limited}});
   EXPECT_EQ(batch.runs(0)->size(), 1u);
@@ -154,19 +169,25 @@ TEST(Batch, SaysWhatItWasTold) {
 TEST(Batch, DamagedFilesAreNamed) {
   const TemporaryDirectory directory;
   const BatchDirectory batch(directory.path());
-  const std::string good = R"({"exit_code": 0, "signal": 0, "seconds": 1, "resumed": false, "timed_out": false, "why": ""})";
+  const std::string good =
+      R"({"exit_code": 0, "signal": 0, "seconds": 1, "resumed": false, "timed_out": false, "why": ""})";
   write(directory / "0-0.status", good);
   EXPECT_EQ(batch.status({0, 0}).end.exit_code, 0);
-  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
-           {"\"exit_code\": 0", "\"exit_code\": 256"}, {"\"exit_code\": 0", "\"exit_code\": \"0\""}, {"\"signal\": 0", "\"signal\": -1"},
-           {"\"seconds\": 1", "\"seconds\": -1"}, {"\"resumed\": false, ", ""}, {"{", ""}}) {
+  for (const auto& [from, to] :
+       std::vector<std::pair<std::string, std::string>>{{"\"exit_code\": 0", "\"exit_code\": 256"},
+                                                        {"\"exit_code\": 0", "\"exit_code\": \"0\""},
+                                                        {"\"signal\": 0", "\"signal\": -1"},
+                                                        {"\"seconds\": 1", "\"seconds\": -1"},
+                                                        {"\"resumed\": false, ", ""},
+                                                        {"{", ""}}) {
     std::string bad = good;
     bad.replace(bad.find(from), from.size(), to);
     write(directory / "0-0.status", bad);
     const std::string said = message<BatchError>([&] { batch.status({0, 0}); });
     EXPECT_NE(said.find("0-0.status"), std::string::npos) << bad;
   }
-  for (const char* name : {"x-0.status", "0.status", "0-.status", "-1-0.status", "0-0.status.tmp-12", "0-0.json"}) write(directory / name, good);
+  for (const char* name : {"x-0.status", "0.status", "0-.status", "-1-0.status", "0-0.status.tmp-12", "0-0.json"})
+    write(directory / name, good);
   EXPECT_EQ(batch.statuses().size(), 1u);
   write(directory / "3.json", R"({"runs": [{"name": "a"}]})");
   EXPECT_NE(message<BatchError>([&] { batch.runs(3); }).find("3.json"), std::string::npos);
@@ -191,10 +212,10 @@ TEST(RunTimes, AMeanOfEachGroup) {
 
 TEST(RunTimes, SizeOfAChunk) {
   EXPECT_EQ(chunk_size(1000, 10, std::nullopt, 300.0), 1u);
-  EXPECT_EQ(chunk_size(1000, 10, 3600.0, 300.0), 1u);             // longer than a task should be: one each
-  EXPECT_EQ(chunk_size(1000000, 10, 3.0, 300.0), 100u);           // 300 s
-  EXPECT_EQ(chunk_size(200, 10, 3.0, 300.0), 20u);                // all free tasks get some
-  EXPECT_EQ(chunk_size(200, 200, 0.1, 300.0), 100u);              // at least 10 s
-  EXPECT_EQ(chunk_size(120, 200, 0.1, 300.0), 60u);               // two tasks, equally long
+  EXPECT_EQ(chunk_size(1000, 10, 3600.0, 300.0), 1u);    // longer than a task should be: one each
+  EXPECT_EQ(chunk_size(1000000, 10, 3.0, 300.0), 100u);  // 300 s
+  EXPECT_EQ(chunk_size(200, 10, 3.0, 300.0), 20u);       // all free tasks get some
+  EXPECT_EQ(chunk_size(200, 200, 0.1, 300.0), 100u);     // at least 10 s
+  EXPECT_EQ(chunk_size(120, 200, 0.1, 300.0), 60u);      // two tasks, equally long
   EXPECT_LE(chunk_size(1000000, 1, 1e-9, 86400.0), 5000u);
 }
