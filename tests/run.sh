@@ -14,6 +14,8 @@ if [ "${1:-all}" = everyday ]; then
 fi
 
 deploy/install-packages.sh tsan
+TALUS_CLANG=-$(printf '%s\n' /usr/bin/clang++-[0-9]* | sed 's/.*-//' | sort -n | tail -1)  # -16: as the presets want it
+export TALUS_CLANG
 cmake --preset dev >/dev/null
 cmake --build --preset dev
 cmake --preset tsan >/dev/null
