@@ -1,0 +1,67 @@
+# bash completion of talus and talusd: verbs and options as their --help has them, so that it never falls behind.
+
+# Options of a command line such as `talus run`.
+_talus_options() {
+  "$@" --help 2>/dev/null | sed -n 's/^  *\(-[a-zA-Z], *\)\{0,1\}\(--[a-z-]*\).*/\2/p'
+}
+
+_talus_verbs() {
+  "$1" --help 2>/dev/null | sed -n '/^[Ss][Uu][Bb][Cc][Oo][Mm]/,/^$/s/^  \([a-z]*\) .*/\1/p'
+}
+
+# Case files here, and the installed ones whose name begins like the word.
+_talus_cases() {
+  compgen -f -X '!*.json' -- "$1"
+  compgen -S / -d -- "$1"
+  local shipped
+  for shipped in "${TALUS_CASES:-/usr/share/talus/cases}/$1"*.json; do
+    [ -e "$shipped" ] && echo "$shipped"
+  done
+}
+
+_talus_values() {
+  case $1 in
+    case) _talus_cases "$2" ;;
+    file) compgen -f -- "$2" ;;
+    directory) compgen -S / -d -- "$2" ;;
+    *) compgen -W "$1" -- "$2" ;;
+  esac
+}
+
+# What may stand behind an option, or nothing known.
+_talus_argument_of() {
+  case $1 in
+    --out | --xi | --token-file | --tokens | --config | --talus) echo file ;;
+    --data | --models) echo directory ;;
+    --quantity) echo influence_zone_m front_connected_m front_mass_99_m front_mass_999_m centre_of_mass_x_m ;;
+    --integrators) echo rk2 leapfrog ;;
+    --yields) echo elastic regularized ;;
+    --precisions) echo single double ;;
+    --new-token) echo submit read ;;
+    --json | --resume | --figures | --retry-failed | --no-figures | --prepare | --from-runs | --watch) return 1 ;;
+    --*) echo "" ;;
+    *) return 1 ;;
+  esac
+}
+
+_talus() {
+  local program=$1 word=$2 previous=$3 verb="" wanted
+  [ "$COMP_CWORD" -gt 1 ] && [ "${program##*/}" = talus ] && verb=${COMP_WORDS[1]}
+  COMPREPLY=()
+  if wanted=$(_talus_argument_of "$previous"); then
+    :
+  elif [[ $word == -* ]]; then
+    wanted=$(_talus_options "$program" ${verb:+"$verb"})
+  else
+    case ${program##*/}:$verb in
+      talus:) wanted=$(_talus_verbs "$program") ;;
+      talus:schema) wanted=$("$program" schema) ;;
+      talus:stats | talus:plot | talus:profile) wanted=directory ;;
+      talus:validate | talus:run | talus:field | talus:study | talus:submit | talus:bench) wanted=case ;;
+      *) wanted="" ;;
+    esac
+  fi
+  mapfile -t COMPREPLY < <(_talus_values "$wanted" "$word")
+}
+
+complete -o filenames -F _talus talus talusd
