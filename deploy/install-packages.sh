@@ -5,7 +5,7 @@ set -euo pipefail
 
 build=(cmake ninja-build g++ pkg-config libeigen3-dev libhdf5-dev libboost-dev nlohmann-json3-dev libcli11-dev libhwy-dev
        librandom123-dev libcpp-httplib-dev libsqlitecpp-dev libsqlite3-dev libssl-dev gnuplot-nox fonts-dejavu-core curl dpkg-dev file)
-test=(libgtest-dev libbenchmark-dev libvalijson-dev python3-venv ca-certificates slurm-wlm munge)
+test=(libgtest-dev libbenchmark-dev libvalijson-dev python3-venv ca-certificates nginx openssl systemd python3-seccomp man-db slurm-wlm munge)
 . /etc/os-release
 llvm=$([ "${VERSION_ID%%.*}" = 12 ] && echo 16 || echo 19)  # Debian 12 and 13 share no version
 tsan=("clang-$llvm" "libclang-rt-$llvm-dev" "libomp-$llvm-dev")

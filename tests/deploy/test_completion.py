@@ -1,4 +1,4 @@
-"""Bash completion against the programs themselves. usage: test_completion.py TALUS TALUSD SOURCE_DIR"""
+"""Bash completion against the programs themselves. usage: test_completion.py TALUSD SOURCE_DIR"""
 import pathlib
 import re
 import subprocess
@@ -6,7 +6,8 @@ import sys
 import tempfile
 import unittest
 
-TALUS, TALUSD, SOURCE = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
+TALUSD, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+TALUS = str(pathlib.Path(TALUSD).with_name("talus"))
 CASES = SOURCE / "solver/cases"
 
 # As bash does at a TAB: the function that `complete` names, with the command, the word and the one before it.
