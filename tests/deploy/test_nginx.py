@@ -162,7 +162,8 @@ class Nginx(daemon.ServiceTest):
             if line.startswith(b"data:"):
                 states.append(daemon.json.loads(line[5:]))
                 if len(states) == 1:  # it came at once, not with the end
-                    self.assertIn(self.daemon.get(f"/jobs/{job}", token=self.token).json["status"], ("accepted", "running"))
+                    now = self.daemon.get(f"/jobs/{job}", token=self.token).json
+                    self.assertIn(now["status"], ("accepted", "running"))
         connection.close()
         self.assertEqual(states[-1]["status"], "successful")
         self.assertGreater(len(states), 2)

@@ -14,8 +14,9 @@ def members(name):
     """System calls of a group (@system-service), or the one of this name."""
     if not name.startswith("@"):
         return {name}
-    text = subprocess.run(["systemd-analyze", "syscall-filter", name], check=True, capture_output=True, text=True).stdout
-    inside = [line.strip() for line in text.splitlines()[1:] if line.strip() and not line.strip().startswith("#")]
+    done = subprocess.run(["systemd-analyze", "syscall-filter", name], check=True, capture_output=True, text=True)
+    lines = [line.strip() for line in done.stdout.splitlines()[1:]]
+    inside = [line for line in lines if line and not line.startswith("#")]
     return set().union(*(members(each) for each in inside))
 
 

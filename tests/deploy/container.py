@@ -1,0 +1,59 @@
+"""Containers without a daemon: buildah with chroot isolation, on a Debian that debootstrap made; needs root.
+
+As a program, container.py BINARY_DIR makes that Debian, once.
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+
+def suite():
+    """The tests' Debian is that of this machine: its package is built for that."""
+    return re.search(r"^VERSION_CODENAME=(\w+)$", pathlib.Path("/etc/os-release").read_text(), re.M)[1]
+
+
+class Buildah:
+    """Images and containers of ours, apart from those of this machine."""
+
+    def __init__(self, binary_dir):
+        self.dir = pathlib.Path(binary_dir) / "containers"
+        self.dir.mkdir(exist_ok=True)
+        self.command = ["buildah", "--root", str(self.dir / "storage"), "--runroot", str(self.dir / "run"),
+                        "--storage-driver", "overlay"]
+        self.base = f"localhost/talus-test-debian:{suite()}"
+
+    def __call__(self, *arguments, check=True, **more):
+        done = subprocess.run([*self.command, *map(str, arguments)], stdin=subprocess.DEVNULL, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, **more)
+        if check and done.returncode != 0:
+            raise AssertionError(f"buildah {' '.join(map(str, arguments))}: {done.returncode}\n{done.stdout[-6000:]}")
+        return done
+
+    def container(self, image):
+        return self("from", "--pull-never", "--isolation", "chroot", image).stdout.split()[-1]
+
+    def run_command(self, container, *command, options=()):
+        return [*self.command, "run", "--isolation", "chroot", *map(str, options), container, "--", *map(str, command)]
+
+    def run(self, container, *command, options=(), check=True):
+        return self("run", "--isolation", "chroot", *options, container, "--", *command, check=check)
+
+    def bootstrap(self):
+        if self("inspect", "--type", "image", self.base, check=False).returncode == 0:
+            return
+        with tempfile.TemporaryDirectory(dir=self.dir) as root:
+            done = subprocess.run(["debootstrap", "--variant=minbase", suite(), root], capture_output=True, text=True)
+            assert done.returncode == 0, done.stdout[-3000:] + done.stderr
+            container = self("from", "scratch").stdout.split()[-1]
+            self("add", "--quiet", container, root, "/")
+            self("commit", "--quiet", "--rm", container, self.base)
+
+
+if __name__ == "__main__":
+    if os.geteuid() != 0 or not shutil.which("buildah"):
+        sys.exit("needs root, buildah and debootstrap")
+    Buildah(sys.argv[1]).bootstrap()
