@@ -1,11 +1,14 @@
 #!/usr/bin/env bash
-# install-packages.sh [build] [test] [tsan]: Debian packages that Talus needs; does nothing where all of them are there.
+# install-packages.sh [build] [test] [tsan] [container]: Debian packages that Talus needs, those that are not there yet.
 # Needs root or sudo only if something is missing.
 set -euo pipefail
 
 build=(cmake ninja-build g++ pkg-config libeigen3-dev libhdf5-dev libboost-dev nlohmann-json3-dev libcli11-dev libhwy-dev
-       librandom123-dev libcpp-httplib-dev libsqlitecpp-dev libsqlite3-dev libssl-dev gnuplot-nox fonts-dejavu-core curl dpkg-dev file)
-test=(libgtest-dev libbenchmark-dev libvalijson-dev python3-venv ca-certificates nginx openssl systemd python3-seccomp man-db slurm-wlm munge)
+       librandom123-dev libcpp-httplib-dev libsqlitecpp-dev libsqlite3-dev libssl-dev gnuplot-nox fonts-dejavu-core curl
+       dpkg-dev file)
+test=(libgtest-dev libbenchmark-dev libvalijson-dev python3-venv ca-certificates nginx openssl systemd python3-seccomp
+      sqlite3 slurm-wlm munge)
+container=(debootstrap buildah iproute2)
 . /etc/os-release
 llvm=$([ "${VERSION_ID%%.*}" = 12 ] && echo 16 || echo 19)  # Debian 12 and 13 share no version
 tsan=("clang-$llvm" "libclang-rt-$llvm-dev" "libomp-$llvm-dev")
@@ -16,7 +19,8 @@ for group in "${@:-build}"; do
     build) wanted+=("${build[@]}") ;;
     test) wanted+=("${test[@]}") ;;
     tsan) wanted+=("${tsan[@]}") ;;
-    *) echo "install-packages.sh: no group '$group' (build, test, tsan)" >&2; exit 2 ;;
+    container) wanted+=("${container[@]}") ;;
+    *) echo "install-packages.sh: no group '$group' (build, test, tsan, container)" >&2; exit 2 ;;
   esac
 done
 

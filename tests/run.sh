@@ -13,7 +13,7 @@ if [ "${1:-all}" = everyday ]; then
   exec ctest --preset release -j "$jobs" -LE slow
 fi
 
-deploy/install-packages.sh tsan
+deploy/install-packages.sh tsan container
 TALUS_CLANG=-$(printf '%s\n' /usr/bin/clang++-[0-9]* | sed 's/.*-//' | sort -n | tail -1)  # -16: as the presets want it
 export TALUS_CLANG
 cmake --preset dev >/dev/null
