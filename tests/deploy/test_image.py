@@ -1,6 +1,5 @@
 """deploy/Dockerfile as service/README.md says, without a daemon: built, run by its user with a volume, healthy, demo.
 
-
 usage: test_image.py TALUSD SOURCE_DIR BINARY_DIR
 """
 import ctypes

@@ -2,11 +2,13 @@
 
 usage: test_unit.py TALUSD SOURCE_DIR
 """
+import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
+import time
 import unittest
 
 SOURCE = pathlib.Path(sys.argv[2])
@@ -59,15 +61,32 @@ class Unit(daemon.ServiceTest):
         daemon.TALUSD = str(wrapper)
         talusd = self.start()
         self.assertIn("Seccomp:\t2", pathlib.Path(f"/proc/{talusd.process.pid}/status").read_text())
-        job = talusd.submit()
+        job = talusd.submit(daemon.study(spacing=0.5, end=2.0))
+        worker = self.a_worker(talusd)
         info = talusd.wait_for(job)
         self.assertEqual(info["status"], "successful", info)
+        self.assertNotIn("unlimited", re.search("Max address space.*", worker)[0])
+        self.assertEqual(re.search(r"nice (\d+)", worker)[1], "5")
         self.assertEqual(talusd.get(f"/jobs/{job}/histogram").status, 200)
         field = talusd.get(f"/jobs/{job}/realizations/2/field?format=svg")  # gnuplot too
         self.assertEqual((field.status, field.body[:5]), (200, b"<?xml"), field.body)
         self.assertEqual(talusd.stop(), 0)
         log = (self.dir / "talusd.log").read_text()
         self.assertNotIn("not permitted", log)
+
+    def a_worker(self, talusd):
+        """Limits and niceness of a run at work."""
+        for _ in range(2000):
+            for process in daemon.workers_of(talusd.data):
+                try:
+                    limits = pathlib.Path(f"/proc/{process}/limits").read_text()
+                    nice = os.getpriority(os.PRIO_PROCESS, process)
+                except OSError:  # it has ended
+                    continue
+                if nice:  # else it has only just begun
+                    return f"{limits}nice {nice}"
+            time.sleep(0.005)
+        self.fail("no worker with a niceness was seen")
 
     def test_the_filter_bites(self):
         attempt = "import ctypes,os; c=ctypes.CDLL(None,use_errno=True); print(c.{}, os.strerror(ctypes.get_errno()))"
