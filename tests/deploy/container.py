@@ -16,6 +16,15 @@ def suite():
     return re.search(r"^VERSION_CODENAME=(\w+)$", pathlib.Path("/etc/os-release").read_text(), re.M)[1]
 
 
+def pack(binary_dir, directory):
+    """The Debian package of what is built."""
+    done = subprocess.run(["cpack", "-G", "DEB", "--config", str(binary_dir / "CPackConfig.cmake"), "-B", str(directory)],
+                          capture_output=True, text=True, cwd=binary_dir)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (package,) = directory.glob("talus_*.deb")
+    return package
+
+
 class Buildah:
     """Images and containers of ours, apart from those of this machine."""
 

@@ -11,19 +11,11 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from container import Buildah  # noqa: E402
+from container import Buildah, pack  # noqa: E402
 
 SOURCE, BINARY = map(pathlib.Path, sys.argv[2:4])
 CASES = "/usr/share/talus/cases"
 ENVIRONMENT = ["--env", "DEBIAN_FRONTEND=noninteractive", "--env", "HOME=/tmp"]
-
-
-def pack(directory):
-    done = subprocess.run(["cpack", "-G", "DEB", "--config", str(BINARY / "CPackConfig.cmake"), "-B", str(directory)],
-                          capture_output=True, text=True, cwd=BINARY)
-    assert done.returncode == 0, done.stdout + done.stderr
-    (package,) = directory.glob("talus_*.deb")
-    return package
 
 
 class Package(unittest.TestCase):
@@ -31,7 +23,7 @@ class Package(unittest.TestCase):
     def setUpClass(cls):
         cls.dir = pathlib.Path(tempfile.mkdtemp(prefix="talus-package-"))
         cls.addClassCleanup(shutil.rmtree, cls.dir)
-        cls.package = pack(cls.dir)
+        cls.package = pack(BINARY, cls.dir)
         cls.buildah = Buildah(BINARY)
         cls.container = cls.buildah.container(cls.buildah.base)
         cls.addClassCleanup(cls.buildah, "rm", cls.container)

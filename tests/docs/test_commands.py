@@ -34,7 +34,7 @@ ELSEWHERE = {
     "tests/run.sh": ".ci/run",
     "cmake --build --preset release && (cd build/release && cpack -G DEB)": "deploy/Dockerfile",
     "apt-get install ./build/release/talus_0.1.0_amd64.deb": "tests/deploy/test_package.py",
-    "systemctl enable --now talusd": "tests/deploy/test_unit.py",
+    "systemctl enable --now talusd": "tests/deploy/test_booted.py",
     "docker build -f deploy/Dockerfile -t talusd .": "tests/deploy/test_image.py",
     "docker run -d --init -p 127.0.0.1:8080:8080 -v talusd:/var/lib/talusd"
     " -v $PWD/tokens:/run/secrets/talusd-tokens:ro talusd --workers 8": "tests/deploy/test_image.py",
