@@ -18,7 +18,7 @@ def suite():
 
 def pack(binary_dir, directory):
     """The Debian package of what is built."""
-    done = subprocess.run(["cpack", "-G", "DEB", "--config", str(binary_dir / "CPackConfig.cmake"), "-B", str(directory)],
+    done = subprocess.run(["cpack", "-G", "DEB", "--config", "CPackConfig.cmake", "-B", str(directory)],
                           capture_output=True, text=True, cwd=binary_dir)
     assert done.returncode == 0, done.stdout + done.stderr
     (package,) = directory.glob("talus_*.deb")

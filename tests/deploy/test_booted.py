@@ -1,5 +1,5 @@
-"""The unit of the Debian package under a real systemd, booted by systemd-nspawn: a study as a dynamic user, everything denied
-that the unit denies; then with the options and the token that the unit's head shows.
+"""The unit of the Debian package under a real systemd, booted by systemd-nspawn: a study as a dynamic user without
+rights; then with the options and the token that the unit's head shows.
 
 usage: test_booted.py TALUSD SOURCE_DIR BINARY_DIR
 """
@@ -19,7 +19,13 @@ SOURCE, BINARY = map(pathlib.Path, sys.argv[2:4])
 # Runs inside as root once the machine is up; what it prints comes back.
 INSIDE = r"""
 exec > /opt/said 2>&1
-answers() { for _ in $(seq 100); do curl -sf http://127.0.0.1:8080/healthz >/dev/null && return; sleep 0.2; done; false; }
+answers() {
+  for _ in $(seq 100); do
+    curl -sf http://127.0.0.1:8080/healthz >/dev/null && return
+    sleep 0.2
+  done
+  false
+}
 answers && echo "answers"
 grep -E '^(Uid|CapEff|NoNewPrivs|Seccomp):' "/proc/$(systemctl show talusd -p MainPID --value)/status"
 job=$(talus submit /usr/share/talus/cases/illustrative.json --realizations 4 --set particle_spacing_m=1 --seed 1)
@@ -60,9 +66,9 @@ class Booted(unittest.TestCase):
         container = buildah.container(buildah.base)
         self.addCleanup(buildah, "rm", container)
         buildah("copy", "--quiet", container, pack(BINARY, directory), "/opt/talus.deb")
-        buildah.run(container, "sh", "-c", "apt-get update -qq && apt-get install -y -qq --no-install-recommends systemd"
-                    " systemd-sysv dbus curl gnuplot-nox fonts-dejavu-core /opt/talus.deb && systemctl enable talusd",
-                    options=["--env", "DEBIAN_FRONTEND=noninteractive"])
+        buildah.run(container, "sh", "-c", "apt-get update -qq && apt-get install -y -qq --no-install-recommends"
+                    " systemd systemd-sysv dbus curl gnuplot-nox fonts-dejavu-core /opt/talus.deb"
+                    " && systemctl enable talusd", options=["--env", "DEBIAN_FRONTEND=noninteractive"])
         root = pathlib.Path(buildah("mount", container).stdout.strip())
         self.addCleanup(buildah, "umount", container)
         (root / "opt/inside.sh").write_text(INSIDE)
@@ -75,8 +81,8 @@ class Booted(unittest.TestCase):
                               stderr=subprocess.STDOUT, text=True, errors="replace")
         self.assertTrue((root / "opt/said").exists(), boot.stdout[-3000:])
         said = (root / "opt/said").read_text()
-        for line in (r"^answers$", r"^Uid:\t(6[1-5]\d{3})\t\1\t\1\t\1$", r"^CapEff:\t0+$", r"^NoNewPrivs:\t1$", r"^Seccomp:\t2$",
-                     r"successful +100 % +4 realizations", r"^<svg$", r"^data of 6[1-5]\d{3}, mode 750$",
+        for line in (r"^answers$", r"^Uid:\t(6[1-5]\d{3})\t\1\t\1\t\1$", r"^CapEff:\t0+$", r"^NoNewPrivs:\t1$",
+                     r"^Seccomp:\t2$", r"successful +100 % +4 realizations", r"^<svg$", r"^data of 6[1-5]\d{3}, mode 750$",
                      r"^ended with success$", r"^nobody: 401$", r"^anna: known$", r"^ExecMainStatus=0$"):
             self.assertRegex(said, re.compile(line, re.M))
 
