@@ -82,7 +82,8 @@ class Booted(unittest.TestCase):
         self.assertTrue((root / "opt/said").exists(), boot.stdout[-3000:])
         said = (root / "opt/said").read_text()
         for line in (r"^answers$", r"^Uid:\t(6[1-5]\d{3})\t\1\t\1\t\1$", r"^CapEff:\t0+$", r"^NoNewPrivs:\t1$",
-                     r"^Seccomp:\t2$", r"successful +100 % +4 realizations", r"^<svg$", r"^data of 6[1-5]\d{3}, mode 750$",
+                     r"^Seccomp:\t2$", r"successful +100 % +4 realizations", r"^<svg$",
+                     r"^data of 6[1-5]\d{3}, mode 750$",
                      r"^ended with success$", r"^nobody: 401$", r"^anna: known$", r"^ExecMainStatus=0$"):
             self.assertRegex(said, re.compile(line, re.M))
 
