@@ -83,10 +83,11 @@ class Image(unittest.TestCase):
         mounts = [each.replace("$PWD/", f"{self.dir}/").replace("talusd:/", f"{self.volume}:/", 1) for each in mounts]
         options = [o for mount in mounts for o in ("--volume", mount)]
         arguments = words[words.index("talusd") + 1:]
-        self.running = subprocess.Popen(
-            self.buildah.run_command(self.container, *self.image["Entrypoint"], *arguments, "--min-disk", "0",
-                                     options=options), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
-        self.assertIn("listens on http://0.0.0.0:8080", self.running.stdout.readline())
+        command = self.buildah.run_command(self.container, *self.image["Entrypoint"], *arguments, "--min-disk", "0",
+                                           options=options)
+        with open(self.dir / "log", "ab") as log:
+            self.running = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=log, text=True)
+        self.assertIn("listens on http://0.0.0.0:8080", self.running.stdout.readline(), (self.dir / "log").read_text())
 
     def stop(self):
         for process in descendants(self.running.pid):
@@ -126,7 +127,7 @@ class Image(unittest.TestCase):
         done = subprocess.run([SOURCE / "deploy/demo.sh"], env=environment, capture_output=True, text=True, timeout=600)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         histogram = json.loads(done.stdout[done.stdout.index("\n{"):])
-        self.assertEqual(sum(histogram["counts"]), 4, histogram)
+        self.assertEqual(sum(histogram["histogram"]["counts"]), 4, histogram)
         self.assertEqual(self.stop(), 0)
         self.assertFalse(self.healthy())
         self.start()
