@@ -86,7 +86,8 @@ class Image(unittest.TestCase):
         command = self.buildah.run_command(self.container, *self.image["Entrypoint"], *arguments, "--min-disk", "0",
                                            options=options)
         with open(self.dir / "log", "ab") as log:
-            self.running = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=log, text=True)
+            self.running = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=log,
+                                            text=True)
         self.assertIn("listens on http://0.0.0.0:8080", self.running.stdout.readline(), (self.dir / "log").read_text())
 
     def stop(self):
