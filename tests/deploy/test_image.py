@@ -37,9 +37,10 @@ def network_of_our_own():
 
 
 def descendants(process):
-    for child in pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split():
-        yield int(child)
-        yield from descendants(child)
+    for children in pathlib.Path(f"/proc/{process}/task").glob("*/children"):  # any thread may have started some
+        for child in children.read_text().split():
+            yield int(child)
+            yield from descendants(child)
 
 
 class Image(unittest.TestCase):
