@@ -36,11 +36,14 @@ def network_of_our_own():
     subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
 
 
-def descendants(process):
-    for children in pathlib.Path(f"/proc/{process}/task").glob("*/children"):  # any thread may have started some
-        for child in children.read_text().split():
-            yield int(child)
-            yield from descendants(child)
+def talusd_processes():
+    """Those of our network."""
+    for entry in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if (entry / "comm").read_text() == "talusd\n" and (entry / "ns/net").samefile("/proc/self/ns/net"):
+                yield int(entry.name)
+        except OSError:
+            pass  # it has ended
 
 
 class Image(unittest.TestCase):
@@ -92,9 +95,8 @@ class Image(unittest.TestCase):
         self.assertIn("listens on http://0.0.0.0:8080", self.running.stdout.readline(), (self.dir / "log").read_text())
 
     def stop(self):
-        for process in descendants(self.running.pid):
-            if pathlib.Path(f"/proc/{process}/comm").read_text() == "talusd\n":
-                os.kill(process, signal.SIGTERM)
+        for process in talusd_processes():
+            os.kill(process, signal.SIGTERM)
         code = self.running.wait(60)
         self.running.stdout.close()
         return code
@@ -135,7 +137,7 @@ class Image(unittest.TestCase):
         self.start()
         self.assertTrue(self.healthy())
         said = subprocess.run([TALUSD.with_name("talus"), "status"], env=environment, capture_output=True, text=True)
-        self.assertIn("successful", said.stdout)
+        self.assertIn("successful", said.stdout, said.stderr)
         self.assertEqual(self.stop(), 0)
 
 
