@@ -55,6 +55,8 @@ class Image(unittest.TestCase):
         cls.image = json.loads(cls.buildah("inspect", "--type", "image", "talusd").stdout)["Docker"]["config"]
         cls.container = cls.buildah.container("talusd")
         cls.addClassCleanup(cls.buildah, "rm", cls.container)
+        # Else this buildah takes now the volume that we give, now one of its own.
+        cls.buildah("config", "--volume", "/var/lib/talusd-", cls.container)
         network_of_our_own()
 
     def setUp(self):
@@ -124,6 +126,7 @@ class Image(unittest.TestCase):
         self.assertFalse(self.healthy())
         self.start()
         self.assertTrue(self.healthy())
+        self.assertTrue((self.volume / "queue.sqlite").exists())
         owners = {entry.stat().st_uid for entry in [self.volume, *self.volume.rglob("*")]}
         self.assertEqual(owners, {10001})
         environment = dict(os.environ, BIN=str(TALUSD.parent), REALIZATIONS="4",
