@@ -35,6 +35,9 @@ ELSEWHERE = {
     "cmake --build --preset release && (cd build/release && cpack -G DEB)": "deploy/Dockerfile",
     "apt-get install ./build/release/talus_0.1.0_amd64.deb": "tests/deploy/test_package.py",
     "systemctl enable --now talusd": "tests/deploy/test_booted.py",
+    "talus study case.json --realizations 100000 --seed 1 --out /shared/study --executor slurm --slurm slurm.json":
+    "tests/slurm/test_slurm.py",
+    "talusd --config talusd.conf": "tests/slurm/test_slurm.py",
     "docker build -f deploy/Dockerfile -t talusd .": "tests/deploy/test_image.py",
     "docker run -d --init -p 127.0.0.1:8080:8080 -v talusd:/var/lib/talusd"
     " -v $PWD/tokens:/run/secrets/talusd-tokens:ro talusd --workers 8": "tests/deploy/test_image.py",
@@ -93,7 +96,7 @@ class Commands(unittest.TestCase):
     def test_blocks_are_of_a_known_kind(self):
         kinds = {(page.relative_to(SOURCE).as_posix(), kind) for page in pages() for kind, _ in blocks(page)}
         self.assertEqual(kinds, {("README.md", "sh elsewhere"), ("README.md", "sh"), ("README.md", "json"),
-                                 ("service/README.md", "sh elsewhere"), ("service/README.md", "sh")})
+                                 ("service/README.md", "sh elsewhere"), ("service/README.md", "sh"), ("deploy/slurm/README.md", "sh elsewhere")})
 
     def test_what_is_run_elsewhere(self):
         lines = {line for page in pages() for text in shell_blocks(page, "sh elsewhere") for line in commands(text)}
@@ -137,7 +140,7 @@ class Commands(unittest.TestCase):
 
     def test_verbs_and_options_in_running_text(self):
         talus = help_of(BIN / "talus")
-        verbs = re.findall(r"^  (\w+) ", re.split(r"(?i)subcommands:", talus)[1], re.M)
+        verbs = re.findall(r"^  (\w+) ", re.split(r"(?i)subcommands:", talus)[1], re.M) + ["array-task"]  # which --help leaves out
         of_verb = {verb: options(help_of(BIN / "talus", verb)) for verb in verbs}
         of_talusd = options(help_of(TALUSD))
         everything = of_talusd.union(*of_verb.values(), options(talus))
