@@ -16,6 +16,15 @@ def suite():
     return re.search(r"^VERSION_CODENAME=(\w+)$", pathlib.Path("/etc/os-release").read_text(), re.M)[1]
 
 
+def with_a_root():
+    """In a chroot / is no mount, which buildah and systemd-nspawn want it to be: starts the program over with the same / as one."""
+    mounts = pathlib.Path("/proc/self/mountinfo").read_text().splitlines()
+    if any(line.split()[4] == "/" for line in mounts):
+        return
+    script = 'mount --make-rprivate / 2>/dev/null; mount --rbind / /mnt && exec chroot /mnt env -C "$0" "$@"'
+    os.execvp("unshare", ["unshare", "--mount", "sh", "-c", script, os.getcwd(), sys.executable, "-B", *sys.argv])
+
+
 def pack(binary_dir, directory):
     """The Debian package of what is built."""
     done = subprocess.run(["cpack", "-G", "DEB", "--config", "CPackConfig.cmake", "-B", str(directory)],
@@ -65,4 +74,5 @@ class Buildah:
 if __name__ == "__main__":
     if os.geteuid() != 0 or not shutil.which("buildah"):
         sys.exit("needs root, buildah and debootstrap")
+    with_a_root()
     Buildah(sys.argv[1]).bootstrap()

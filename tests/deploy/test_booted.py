@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from container import Buildah, pack  # noqa: E402
+from container import Buildah, pack, with_a_root  # noqa: E402
 
 SOURCE, BINARY = map(pathlib.Path, sys.argv[2:4])
 
@@ -89,4 +89,5 @@ class Booted(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    with_a_root()
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -17,7 +17,7 @@ import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from container import Buildah  # noqa: E402
+from container import Buildah, with_a_root  # noqa: E402
 
 TALUSD, SOURCE, BINARY = map(pathlib.Path, sys.argv[1:4])
 CLONE_NEWNET = 0x40000000
@@ -145,4 +145,5 @@ class Image(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    with_a_root()
     unittest.main(argv=sys.argv[:1], verbosity=2)
