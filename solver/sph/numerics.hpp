@@ -28,7 +28,7 @@ struct Rheology {
 /// How the equations are discretised.
 struct Numerics {
   /// Wendland's kernel keeps particles from pairing and allows a wide support; with it replicate runs stay together at fine spacings too:
-  /// on the illustrative slope at dx = 0.1 m the front's noise is 4.5 mm, against 31 mm with the cubic spline and h = 1.2 dx.
+  /// on the illustrative slope at dx = 0.1 m the front's noise is 4.5 mm, against 32 mm with the cubic spline and h = 1.2 dx.
   KernelShape kernel = KernelShape::wendland_c2;
   double h_over_dx = 1.5;                ///< smoothing length over particle spacing [-], in [1, 2]
   std::optional<double> c_s;             ///< speed of sound [m/s], > 0; unset: 10 sqrt(2 g H)
