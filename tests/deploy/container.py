@@ -21,8 +21,8 @@ def with_a_root():
     mounts = pathlib.Path("/proc/self/mountinfo").read_text().splitlines()
     if any(line.split()[4] == "/" for line in mounts):
         return
-    script = 'mount --make-rprivate / 2>/dev/null; mount --rbind / /mnt && exec chroot /mnt env -C "$0" "$@"'
-    os.execvp("unshare", ["unshare", "--mount", "sh", "-c", script, os.getcwd(), sys.executable, "-B", *sys.argv])
+    script = 'mount --rbind / /mnt && exec chroot /mnt env -C "$0" "$@"'
+    os.execvp("unshare", ["unshare", "--mount", "--propagation", "unchanged", "sh", "-c", script, os.getcwd(), sys.executable, "-B", *sys.argv])
 
 
 def pack(binary_dir, directory):
