@@ -115,8 +115,9 @@ void VectorisedFlow::share_out() {
 /// Inside a parallel region.
 template <class F>
 void VectorisedFlow::for_chunks(std::size_t Share::* next, std::size_t Share::* other, F&& f) {
-  const auto thread = static_cast<std::size_t>(omp_get_thread_num());
-  shares_[thread].*other = shares_[thread].begin;
+  const auto thread = static_cast<std::size_t>(omp_get_thread_num()), threads = static_cast<std::size_t>(omp_get_num_threads());
+  // There may be fewer threads than shares: OpenMP gives as many as it can.
+  for (std::size_t t = thread; t < shares_.size(); t += threads) shares_[t].*other = shares_[t].begin;
   for (std::size_t t = 0; t < shares_.size(); ++t) {
     Share& share = shares_[(thread + t) % shares_.size()];
     const std::atomic_ref<std::size_t> taken(share.*next);
