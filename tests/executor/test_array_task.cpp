@@ -52,6 +52,14 @@ struct Fixture {
   void until_log(std::size_t run) const {
     while (content(runs[run].log).empty()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
+  /// Asks the task to stop while its first run is under way, and waits for its end.
+  void start_and_stop() {
+    write_batch();
+    const pid_t pid = start();
+    until_log(0);
+    ::kill(pid, SIGTERM);
+    EXPECT_EQ(wait(pid), 0);
+  }
 };
 
 }  // namespace
@@ -92,11 +100,7 @@ TEST(ArrayTask, PassesTheSignalOnAndLeavesTheRestToAnother) {
   Fixture f;
   f.add("trap 'echo checkpoint; exit 6' TERM; echo ready; sleep 100 & wait");
   f.add("echo never");
-  f.write_batch();
-  const pid_t pid = f.start();
-  f.until_log(0);
-  ::kill(pid, SIGTERM);
-  EXPECT_EQ(f.wait(pid), 0);
+  f.start_and_stop();
   EXPECT_EQ(content(f.runs[0].log), "ready\ncheckpoint\n");
   EXPECT_TRUE(f.batch.statuses().empty());
   EXPECT_FALSE(fs::exists(f.runs[1].log));
@@ -106,11 +110,7 @@ TEST(ArrayTask, ARunThatEndsAllTheSameWhenAskedToStopCounts) {
   Fixture f;
   f.add("trap 'exit 0' TERM; echo ready; sleep 100 & wait");
   f.add("echo never");
-  f.write_batch();
-  const pid_t pid = f.start();
-  f.until_log(0);
-  ::kill(pid, SIGTERM);
-  EXPECT_EQ(f.wait(pid), 0);
+  f.start_and_stop();
   EXPECT_EQ(f.batch.statuses(), (std::vector<RunPlace>{{3, 0}}));
 }
 
