@@ -14,7 +14,7 @@ SOURCE = ("quasi-2D channels: Lube, Huppert, Sparks & Freundt, Phys. Rev. E 72 (
           "Lajeunesse, Monnier & Homsy, Phys. Fluids 17 (2005) 103302: exponents 1 and 2/3 (kink near a = 3), height as a^(1/3); "
           "Balmforth & Kerswell, J. Fluid Mech. 538 (2005) 399-428, one exponent for all a: run-out 0.9 +/- 0.1 in wide channels, 0.65 +/- 0.05 in narrow ones, height 0.4 and 0.5. Two-dimensional discs (no side walls): "
           "Staron & Hinch, J. Fluid Mech. 545 (2005) 1-27: run-out 2.5 a (a < 2), 3.25 a^0.7, height as a^0.35. All in half widths of the column")
-REMARKS = ("Run-outs lie with the channels', which are shorter than those of discs. Both exponents are somewhat above the published ones: short columns lose a relatively large part "
+REMARKS = ("The exponents of Balmforth & Kerswell were read in their abstract, the other coefficients are as later studies cite them. Run-outs lie with the channels', which are shorter than those of discs. Both exponents are somewhat above the published ones: short columns lose a relatively large part "
            "of their run-out to the rule of two rows; why those of tall ones are above is not known.")
 HALF_WIDTH, PHI = 0.1, 31.0
 KINK = 2.5
