@@ -82,12 +82,12 @@ void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const C
   {
     pack_active(soil, 0.0);
     // Sources may have moved since the cells were built; from now on targets and sources both may move by `way`.
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic) nowait
     for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) {
       list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, soil_cells, s.motion, reach + way, moved, n_soil, c, flow_.soil_soil);
       list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, wall_cells, w.place, reach, 0.0, n_wall, c, flow_.soil_wall);
     }
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic)
     for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c)
       list_neighbours(flow_.fixed, flow_.wall_clusters, w.place, soil_cells, s.motion, reach, moved, n_soil, c, flow_.wall_soil);
   }
@@ -141,7 +141,7 @@ void VectorisedFlow::evaluate_here(Soil& soil, WallParticles& walls, double ahea
 #pragma omp barrier
 #pragma omp master
   watch.lap(times_.gradient);
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic)  // most are far from the soil and cost nothing
   for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, k_, walls, c);
 #pragma omp master
   watch.lap(times_.walls);

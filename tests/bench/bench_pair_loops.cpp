@@ -1,4 +1,4 @@
-// The loops of one evaluation, each by itself, over 12,800 particles of disordered soil. Items are soil particles.
+// The loops of one evaluation, each by itself, over 12,800 and a million particles of disordered soil. Items are soil particles.
 
 #include <cstdint>
 
@@ -16,12 +16,13 @@ using namespace testing_support;
 struct Bed {
   static constexpr double way_h = 0.05;  ///< what a particle may move before the lists are renewed [h]
 
-  explicit Bed(KernelShape kernel = KernelShape::cubic_spline) {
+  /// @param width  particles along x; half as many along y
+  explicit Bed(std::int64_t width = 160, KernelShape kernel = KernelShape::cubic_spline) {
     k.numerics.precision = Precision::single, k.numerics.kernel = kernel;
-    soil = random_soil(160, 80, k.dx, 3);
+    soil = random_soil(static_cast<int>(width), static_cast<int>(width / 2), k.dx, 3);
     for (auto* t : {&soil.txx, &soil.tyy, &soil.txy})
       for (double& value : *t) value *= 0.1;  // some yield, some do not
-    walls = flat_walls(160, k.dx);
+    walls = flat_walls(static_cast<int>(width), k.dx);
     soil_cells = sorted(soil, 2.3 * k.h), wall_cells = sorted(walls, 2.0 * k.h);
     const auto chunks = [](const auto& first) { return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size; };
     f.fixed = FixedPoint::covering(soil_cells.box(), k.h);
@@ -59,12 +60,12 @@ struct Bed {
 };
 
 void Pack(benchmark::State& state) {
-  Bed bed;
+  Bed bed(state.range(0));
   for (auto _ : state) pack_soil(bed.f, bed.k, bed.soil, 1e-5, {0, bed.soil.size()});
   bed.report(state);
 }
 void Sort(benchmark::State& state) {
-  Bed bed;
+  Bed bed(state.range(0));
   std::vector<double> scratch;
   for (auto _ : state) {
     bed.soil_cells.build(bed.soil.x, bed.soil.y, 2.3 * bed.k.h);
@@ -73,12 +74,12 @@ void Sort(benchmark::State& state) {
   bed.report(state);
 }
 void Lists(benchmark::State& state) {
-  Bed bed;
+  Bed bed(state.range(0));
   for (auto _ : state) bed.list();
   bed.report(state);
 }
 void StressPass(benchmark::State& state) {
-  Bed bed(static_cast<KernelShape>(state.range(0)));
+  Bed bed(state.range(0), static_cast<KernelShape>(state.range(1)));
   for (auto _ : state) bed.stress();
   bed.report(state);
 }
@@ -90,14 +91,14 @@ void WallStressPass(benchmark::State& state) {
   bed.report(state);
 }
 void MomentumPass(benchmark::State& state) {
-  Bed bed(static_cast<KernelShape>(state.range(0)));
+  Bed bed(state.range(0), static_cast<KernelShape>(state.range(1)));
   bed.stress();
   for (auto _ : state)
     for (std::size_t c = 0; c < bed.f.soil_soil.chunks.size(); ++c) momentum_pass(bed.f, bed.k, c);
   bed.report(state);
 }
 void Move(benchmark::State& state) {
-  Bed bed;
+  Bed bed(state.range(0));
   for (auto _ : state) benchmark::DoNotOptimize(move_soil(bed.f, bed.k, bed.soil, 0.0, true, {0, bed.soil.size()}));
   bed.report(state);
 }
@@ -108,13 +109,15 @@ void PlainEvaluation(benchmark::State& state) {
   bed.report(state);
 }
 
-BENCHMARK(Sort);
-BENCHMARK(Lists);
-BENCHMARK(Pack);
-BENCHMARK(StressPass)->ArgName("wendland")->Arg(0)->Arg(1);
+constexpr std::int64_t narrow = 160, wide = 1414;  // 12,800 and 999,698 particles
+
+BENCHMARK(Sort)->ArgName("width")->Arg(narrow)->Arg(wide);
+BENCHMARK(Lists)->ArgName("width")->Arg(narrow)->Arg(wide);
+BENCHMARK(Pack)->ArgName("width")->Arg(narrow)->Arg(wide);
+BENCHMARK(StressPass)->ArgNames({"width", "wendland"})->ArgsProduct({{narrow, wide}, {0, 1}});
 BENCHMARK(WallStressPass);
-BENCHMARK(MomentumPass)->ArgName("wendland")->Arg(0)->Arg(1);
-BENCHMARK(Move);
+BENCHMARK(MomentumPass)->ArgNames({"width", "wendland"})->ArgsProduct({{narrow, wide}, {0, 1}});
+BENCHMARK(Move)->ArgName("width")->Arg(narrow)->Arg(wide);
 BENCHMARK(PlainEvaluation);
 
 }  // namespace
