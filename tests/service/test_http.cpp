@@ -74,8 +74,11 @@ TEST(Tokens, AreFoundByTheirHash) {
   ASSERT_TRUE(tokens.find("Bearer " + token));
   EXPECT_EQ(tokens.find("Bearer " + token)->subject, "anna");
   EXPECT_EQ(tokens.find("Bearer " + token)->role, Role::submit);
+  for (const char* scheme : {"bearer ", "BEARER ", "bEaReR ", "Bearer  "})  // RFC 9110 11.1, 11.4
+    EXPECT_TRUE(tokens.find(scheme + token)) << scheme;
   for (const std::string& bad :
-       std::vector<std::string>{"", token, "Bearer " + token + " ", "bearer " + token, "Bearer x"})
+       std::vector<std::string>{"", token, "Bearer " + token + " ", "Bearer" + token, "Bearer\t" + token, "Bearer", "Bearer ",
+                                "Basic " + token, " Bearer " + token, "Bearer x"})
     EXPECT_FALSE(tokens.find(bad)) << bad;
 }
 
