@@ -63,6 +63,9 @@ TEST(Routes, AreFoundByMethodAndPath) {
   EXPECT_EQ(wrong.allow, "GET, HEAD, DELETE, OPTIONS");
   EXPECT_EQ(router.find("GET", "/jobs/a/b").allow, "");
   EXPECT_EQ(router.find("GET", "/jobs").allow, "");
+  const Router::Found server = router.find("OPTIONS", "*");
+  EXPECT_FALSE(server.handler);
+  EXPECT_EQ(server.allow, "GET, HEAD, DELETE, OPTIONS");
 }
 
 TEST(Tokens, AreFoundByTheirHash) {

@@ -126,6 +126,33 @@ class Probes(ServiceTest):
         answer = self.daemon.raw((one + b"\r\n") * 3 + one + b"Connection: close\r\n\r\n")
         self.assertEqual(answer.count(b"HTTP/1.1 200 OK"), 4)
 
+    def test_targets_in_absolute_form(self):
+        here = b"http://localhost:%d" % self.daemon.port
+
+        def answer(target, host=HEAD, method=b"GET"):
+            head = method + b" " + target + b" HTTP/1.1\r\n" + host + b"Connection: close\r\n\r\n"
+            return self.daemon.raw(head)
+
+        got = answer(here + b"/processes?limit=1")
+        self.assertTrue(got.startswith(b"HTTP/1.1 200 "), got[:200])
+        document = json.loads(got.partition(b"\r\n\r\n")[2])
+        self.assertEqual(document["links"][0]["href"], f"{here.decode()}/processes?limit=1")
+        self.assertTrue(answer(here).startswith(b"HTTP/1.1 200 "))
+        self.assertTrue(answer(here + b"/nothing").startswith(b"HTTP/1.1 404 "))
+        for target in (b"http://evil.example/", b"http://localhost.evil.example/"):
+            self.assertTrue(answer(target).startswith(b"HTTP/1.1 403 "), target)
+        self.assertTrue(answer(here + b"/", b"Host: evil.example\r\n").startswith(b"HTTP/1.1 403 "))
+        for target in (b"http:///jobs", b"http://user@localhost/", b"https://localhost/", b"ftp://localhost/", b"*"):
+            self.assertTrue(answer(target).startswith(b"HTTP/1.1 400 "), target)
+        one = b"GET " + here + b"/healthz HTTP/1.1\r\n" + HEAD
+        self.assertEqual(self.daemon.raw(one + b"\r\n" + one + b"Connection: close\r\n\r\n").count(b"200 OK"), 2)
+
+    def test_options_of_the_server(self):
+        for target in (b"*", b"http://localhost"):
+            answer = self.daemon.raw(b"OPTIONS " + target + b" HTTP/1.1\r\n" + HEAD + b"Connection: close\r\n\r\n")
+            self.assertTrue(answer.startswith(b"HTTP/1.1 204 "), answer[:200])
+            self.assertIn(b"\r\nAllow: GET, HEAD, POST, DELETE, OPTIONS\r\n", answer)
+
     def test_request_ids_are_given_back_if_they_are_fit_for_a_log(self):
         def given_back(value):
             return self.daemon.get("/", headers={"X-Request-Id": value}).headers["X-Request-Id"]
