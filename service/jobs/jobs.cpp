@@ -40,6 +40,14 @@ class NewDirectory {
   bool kept_ = false;
 };
 
+/// Which of its means `talus` says it could not use.
+const char* unusable(const std::string& said) {
+  const auto has = [&said](const char* words) { return said.find(words) != std::string::npos; };
+  if (has("gnuplot not found")) return "gnuplot, which draws the pictures, is missing here";
+  if (has("gnuplot failed") || has("cannot start gnuplot")) return "gnuplot, which draws the pictures, could not be run";
+  return "a file of the service cannot be read or written";
+}
+
 std::string text(double value) { return Json(value).dump(); }
 
 double core_hours(double particles, double steps, double runs) {
@@ -78,7 +86,7 @@ Outcome Jobs::run(const Command& command, std::chrono::milliseconds limit, bool 
   if (!outcome.end.signal && (outcome.end.exit_code == io_exit || cut_short)) {
     log_error("talus_cannot_write", {{"said", outcome.err}});
     throw Refusal(disk_left(config_.data) < crowded_bytes ? Reason::disk_full : Reason::unavailable,
-                  "a file of the service cannot be read or written");
+                  unusable(outcome.err));
   }
   return outcome;
 }

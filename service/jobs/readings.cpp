@@ -5,6 +5,7 @@
 #include "jobs/jobs.hpp"
 #include "support/digest.hpp"
 #include "support/files.hpp"
+#include "support/log.hpp"
 
 namespace talus::service {
 namespace {
@@ -27,8 +28,8 @@ void prune(const fs::path& directory, std::size_t keep) {
 }
 
 [[noreturn]] void broke(const Outcome& outcome, const char* what) {
-  throw Refusal(Reason::internal, std::string(what) + " could not be made" +
-                                      (outcome.err.find("gnuplot") != std::string::npos ? ": gnuplot is missing here" : ""));
+  log_error("talus_broke", {{"exit_code", outcome.end.exit_code}, {"signal", outcome.end.signal}, {"said", outcome.err}});
+  throw Refusal(Reason::internal, std::string(what) + " could not be made");
 }
 
 /// Leaves out what has no value: `talus` says null.
