@@ -2,6 +2,9 @@
 """Requests that nobody should send, and clients that are slow."""
 
 import concurrent.futures
+import datetime
+import email
+import email.utils
 import json
 import os
 import re
@@ -152,6 +155,36 @@ class Probes(ServiceTest):
             answer = self.daemon.raw(b"OPTIONS " + target + b" HTTP/1.1\r\n" + HEAD + b"Connection: close\r\n\r\n")
             self.assertTrue(answer.startswith(b"HTTP/1.1 204 "), answer[:200])
             self.assertIn(b"\r\nAllow: GET, HEAD, POST, DELETE, OPTIONS\r\n", answer)
+
+    def test_heads_say_when_and_how_long(self):  # RFC 9110 6.6.1 and 8.6
+        def head(line, more=b""):
+            answer = self.daemon.raw(line + b" HTTP/1.1\r\n" + HEAD + more + b"Connection: close\r\n\r\n")
+            status, _, rest = answer.partition(b"\r\n")
+            headers = email.message_from_bytes(rest)
+            age = datetime.datetime.now(datetime.timezone.utc) - email.utils.parsedate_to_datetime(headers["Date"])
+            self.assertLess(abs(age.total_seconds()), 10)
+            self.assertTrue(headers["Date"].endswith(" GMT"))
+            return int(status.split()[1]), headers
+
+        body = b'{"inputs": {"s": "a", "pause": 9}}'
+        headers = b"Prefer: respond-async\r\nContent-Length: %d\r\n" % len(body)
+        post = b"POST /processes/echo/execution HTTP/1.1\r\n" + HEAD + headers + b"Connection: close\r\n\r\n" + body
+        job = json.loads(self.daemon.raw(post).partition(b"\r\n\r\n")[2])["jobID"].encode()
+        length = str(len(self.daemon.get("/api").body))
+        for line, more, status, expected in (
+            (b"GET /api", b"", 200, length),
+            (b"HEAD /api", b"", 200, length),
+            (b"GET /api", b"If-None-Match: *\r\n", 304, None),
+            (b"OPTIONS /api", b"", 204, None),
+            (b"HEAD /jobs/" + job + b"/events", b"", 200, None),  # a stream has no length
+        ):
+            got, headers = head(line, more)
+            self.assertEqual((got, headers["Content-Length"]), (status, expected), line)
+        self.assertEqual((headers["Content-Type"], headers["ETag"]), ("text/event-stream", None))
+        for line, more, status in ((b"GET /nothing", b"", 404), (b"GET nothing", b"", 400)):
+            got, headers = head(line, more)
+            self.assertEqual(got, status)
+            self.assertGreater(int(headers["Content-Length"]), 0)
 
     def test_request_ids_are_given_back_if_they_are_fit_for_a_log(self):
         def given_back(value):
