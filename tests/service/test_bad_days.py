@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Full disks, files that cannot be written, clocks that jump."""
 
+import fcntl
 import os
 import shutil
 import sqlite3
 import subprocess
+import threading
 import time
 
 from daemon import TALUS, TALUSD, Daemon, ServiceTest, main, study
@@ -114,6 +116,15 @@ class BadDays(ServiceTest):
         )
         self.assertEqual(done.returncode, 5, done.stderr)
         self.assertIn(str(data), done.stderr)
+
+    def test_a_talusd_killed_a_moment_ago(self):
+        """Its locks outlive it for that moment; who starts the next at once need not try again."""
+        (self.dir / "data").mkdir()
+        with open(self.dir / "data/talusd.lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            threading.Timer(0.5, lambda: fcntl.flock(lock, fcntl.LOCK_UN)).start()
+            self.start()
+        self.assertEqual(self.daemon.get("/healthz").status, 200)
 
     def test_a_database_that_is_none_of_ours(self):
         data = self.dir / "data"
