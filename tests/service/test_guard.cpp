@@ -47,14 +47,15 @@ TEST(Guard, RequestLines) {
 }
 
 TEST(Guard, TargetsInAbsoluteForm) {  // RFC 9112 3.2.2: to be taken, and their authority stands for Host
-  EXPECT_EQ(of("GET http://b:80/jobs?x=1 HTTP/1.1").rewritten, of("GET /jobs?x=1 HTTP/1.1", "Host: b:80\r\n").rewritten);
+  EXPECT_EQ(of("GET http://b:80/jobs?x=1 HTTP/1.1").rewritten,
+            of("GET /jobs?x=1 HTTP/1.1", "Host: b:80\r\n").rewritten);
   EXPECT_EQ(of("GET HTTP://b/ HTTP/1.1").rewritten, of("GET / HTTP/1.1", "Host: b\r\n").rewritten);
   EXPECT_EQ(of("GET http://b HTTP/1.1").rewritten, of("GET / HTTP/1.1", "Host: b\r\n").rewritten);
   EXPECT_EQ(of("GET http://b?x=1 HTTP/1.1").rewritten, of("GET /?x=1 HTTP/1.1", "Host: b\r\n").rewritten);
   EXPECT_EQ(of("GET http://b/http://c/ HTTP/1.1").rewritten, of("GET /http://c/ HTTP/1.1", "Host: b\r\n").rewritten);
   EXPECT_EQ(of("GET http://b/ HTTP/1.0", "").rewritten, of("GET / HTTP/1.0", "Host: b\r\n").rewritten);
-  for (const char* target : {"http:///jobs", "http://:80/jobs", "http://u@b/", "http://b%0d%0a/", "http://b,c/", "http:/b",
-                             "http:", "https://b/", "ftp://b/", "b:80", "jobs", "http://b/\x01", "?x=1"})
+  for (const char* target : {"http:///jobs", "http://:80/jobs", "http://u@b/", "http://b%0d%0a/", "http://b,c/",
+                             "http:/b", "http:", "https://b/", "ftp://b/", "b:80", "jobs", "http://b/\x01", "?x=1"})
     EXPECT_EQ(status("GET " + std::string(target) + " HTTP/1.1"), 400) << target;
   EXPECT_EQ(status("GET http://b/ HTTP/1.1", ""), 400);
   EXPECT_EQ(status("GET http://b/ HTTP/1.1", "Host: a/b\r\n"), 400);

@@ -80,8 +80,8 @@ TEST(Tokens, AreFoundByTheirHash) {
   for (const char* scheme : {"bearer ", "BEARER ", "bEaReR ", "Bearer  "})  // RFC 9110 11.1, 11.4
     EXPECT_TRUE(tokens.find(scheme + token)) << scheme;
   for (const std::string& bad :
-       std::vector<std::string>{"", token, "Bearer " + token + " ", "Bearer" + token, "Bearer\t" + token, "Bearer", "Bearer ",
-                                "Basic " + token, " Bearer " + token, "Bearer x"})
+       std::vector<std::string>{"", token, "Bearer " + token + " ", "Bearer" + token, "Bearer\t" + token, "Bearer",
+                                "Bearer ", "Basic " + token, " Bearer " + token, "Bearer x"})
     EXPECT_FALSE(tokens.find(bad)) << bad;
 }
 
