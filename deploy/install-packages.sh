@@ -7,7 +7,7 @@ build=(cmake ninja-build g++ pkg-config libeigen3-dev libhdf5-dev libboost-dev n
        librandom123-dev libcpp-httplib-dev libsqlitecpp-dev libsqlite3-dev libssl-dev gnuplot-nox fonts-dejavu-core curl
        dpkg-dev file)
 test=(libgtest-dev libbenchmark-dev libvalijson-dev python3-venv ca-certificates nginx openssl systemd python3-seccomp
-      sqlite3 e2fsprogs slurm-wlm munge)
+      sqlite3 e2fsprogs slurm-wlm munge wrk)
 container=(debootstrap buildah iproute2 systemd-container)
 . /etc/os-release
 llvm=$([ "${VERSION_ID%%.*}" = 12 ] && echo 16 || echo 19)  # Debian 12 and 13 share no version

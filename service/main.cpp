@@ -39,14 +39,16 @@ void raise_file_limit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-/// Workers inherit this lock. When talusd was killed they die with it, but not at once; two of them in one directory
-/// would spoil it.
-Descriptor wait_for_workers(const DataDirectory& data) {
-  for (int i = 0; i < 200; ++i) {
-    if (Descriptor lock = try_lock(data.workers_lock(), true)) return lock;
+/// A lock; who was killed holds it for a moment longer.
+/// @param inherited  whether workers hold it, too
+Descriptor wait_for_lock(const std::filesystem::path& path, bool inherited, std::chrono::seconds patience,
+                         const std::string& otherwise) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  for (;;) {
+    if (Descriptor lock = try_lock(path, inherited)) return lock;
+    if (std::chrono::steady_clock::now() > end) throw FileError(otherwise);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  throw FileError("workers of an earlier talusd still run in " + data.root.string() + "; end them first");
 }
 
 std::string url_of(const Config& config) {
@@ -70,9 +72,12 @@ int serve(Config config) {
   const Tokens tokens = config.tokens.empty() ? Tokens() : Tokens(config.tokens);
   const DataDirectory data{config.data};
   for (const auto& directory : {data.root, data.jobs(), data.scratch()}) std::filesystem::create_directories(directory);
-  const Descriptor lock = try_lock(data.lock(), false);
-  if (!lock) throw FileError("another talusd is at work in " + data.root.string());
-  const Descriptor workers_lock = wait_for_workers(data);
+  const Descriptor lock = wait_for_lock(data.lock(), false, std::chrono::seconds(1),
+                                        "another talusd is at work in " + data.root.string());
+  // When talusd was killed its workers die with it, but not at once; two of them in one directory would spoil it.
+  const Descriptor workers_lock =
+      wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
+                    "workers of an earlier talusd still run in " + data.root.string() + "; end them first");
 
   Store store(data.database(), system_now);
   Changes changes;
@@ -90,13 +95,18 @@ int serve(Config config) {
   add_operation_routes(router, service);
   add_umbridge_routes(router, service);
 
-  Server server(settings_of(config, tokens), [&](const Incoming& request) { return answer(request, router, service, tokens); });
+  Server server(settings_of(config, tokens),
+                [&](const Incoming& request) { return answer(request, router, service, tokens); });
   config.port = server.bind(config.address, config.port);
-  if (config.port == 0) throw FileError("cannot listen on " + config.address + ": the port is taken, or the address is not ours");
+  if (config.port == 0)
+    throw FileError("cannot listen on " + config.address + ": the port is taken, or the address is not ours");
   scheduler.start();
   std::thread http([&] { server.serve(); });
   std::cout << "talusd " << TALUS_VERSION << " listens on " << url_of(config) << std::endl;
-  log_info("started", {{"url", url_of(config)}, {"data", data.root.string()}, {"workers", config.workers}, {"threads", config.threads}});
+  log_info("started", {{"url", url_of(config)},
+                       {"data", data.root.string()},
+                       {"workers", config.workers},
+                       {"threads", config.threads}});
 
   int number = 0;
   sigwait(&stop_signals, &number);

@@ -55,33 +55,56 @@ Options read_options(int argc, char** argv) {
   app.set_version_flag("--version", std::string("talusd ") + TALUS_VERSION);
   app.set_config("--config", "", "file of the same options: name = value");
   app.add_option("--data", config.data, "directory for the queue and all results; created");
-  app.add_option("--listen", listen, "ADDRESS:PORT; port 0: any free one; other than loopback needs --tokens")->capture_default_str();
+  app.add_option("--listen", listen, "ADDRESS:PORT; port 0: any free one; other than loopback needs --tokens")
+      ->capture_default_str();
   app.add_option("--executor", place, "where runs are executed: local (here) or slurm (array jobs)")
       ->check(CLI::IsMember({"local", "slurm"}))
       ->capture_default_str();
   app.add_option("--slurm", slurm, "with --executor slurm: file that says how");
-  app.add_option("--workers", config.workers, "runs at a time with --executor local")->check(CLI::Range(1, 1024))->capture_default_str();
-  app.add_option("--threads", config.threads, "OpenMP threads of each run")->check(CLI::Range(1, 1024))->capture_default_str();
+  app.add_option("--workers", config.workers, "runs at a time with --executor local")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  app.add_option("--threads", config.threads, "OpenMP threads of each run")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
   app.add_option("--tokens", config.tokens, "file of tokens; who has none is refused");
   app.add_option("--talus", config.program, "the talus program; otherwise the one beside talusd");
   app.add_option("--models", config.models, "directory of cases served over UM-Bridge");
   app.add_option("--public-url", config.public_url, "what absolute links begin with, behind a proxy");
-  app.add_option("--attempts", config.attempts, "crashes of a run before it counts as failed")->check(CLI::Range(1, 100))->capture_default_str();
-  app.add_option("--time-limit", time_limit, "seconds that one run may take")->check(CLI::Range(1, 30 * 86400))->capture_default_str();
-  app.add_option("--grace", grace, "seconds for runs to checkpoint when talusd is stopped")->check(CLI::Range(0, 3600))->capture_default_str();
-  app.add_option("--lease", lease, "seconds after which a run that nobody holds is given out again")->check(CLI::Range(3, 3600))->capture_default_str();
-  app.add_option("--memory", memory_mib, "MiB of address space of a run; 0: by its size; negative: no limit")->capture_default_str();
+  app.add_option("--attempts", config.attempts, "crashes of a run before it counts as failed")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  app.add_option("--time-limit", time_limit, "seconds that one run may take")
+      ->check(CLI::Range(1, 30 * 86400))
+      ->capture_default_str();
+  app.add_option("--grace", grace, "seconds for runs to checkpoint when talusd is stopped")
+      ->check(CLI::Range(0, 3600))
+      ->capture_default_str();
+  app.add_option("--lease", lease, "seconds after which a run that nobody holds is given out again")
+      ->check(CLI::Range(3, 3600))
+      ->capture_default_str();
+  app.add_option("--memory", memory_mib, "MiB of address space of a run; 0: by its size; negative: no limit")
+      ->capture_default_str();
   app.add_option("--nice", config.niceness, "niceness of runs")->check(CLI::Range(0, 19))->capture_default_str();
   app.add_option("--max-body", body_mib, "MiB of a request")->check(CLI::Range(0.001, 1024.0))->capture_default_str();
-  app.add_option("--max-streams", config.streams, "clients that may wait for events at a time")->check(CLI::Range(1, 4096))->capture_default_str();
-  app.add_option("--http-threads", config.http_threads, "connections served at a time")->check(CLI::Range(64, 4096))->capture_default_str();
+  app.add_option("--max-streams", config.streams, "clients that may wait for events at a time")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  app.add_option("--http-threads", config.http_threads, "connections served at a time")
+      ->check(CLI::Range(64, 4096))
+      ->capture_default_str();
   app.add_option("--max-particles", config.quotas.particles, "of a case")->capture_default_str();
   app.add_option("--max-steps", config.quotas.steps, "of a run")->capture_default_str();
-  app.add_option("--max-realizations", config.quotas.realizations, "of a job")->check(CLI::Range(1, 10'000'000))->capture_default_str();
+  app.add_option("--max-realizations", config.quotas.realizations, "of a job")
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
   app.add_option("--max-core-hours", config.quotas.core_hours, "of a job, estimated")->capture_default_str();
   app.add_option("--max-jobs", config.quotas.open_jobs, "that wait or run, in all")->capture_default_str();
-  app.add_option("--max-jobs-each", config.quotas.open_jobs_of_one, "that wait or run, of one subject")->capture_default_str();
-  app.add_option("--min-disk", min_disk_mib, "MiB that must stay free")->check(CLI::NonNegativeNumber)->capture_default_str();
+  app.add_option("--max-jobs-each", config.quotas.open_jobs_of_one, "that wait or run, of one subject")
+      ->capture_default_str();
+  app.add_option("--min-disk", min_disk_mib, "MiB that must stay free")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_option("--new-token", options.new_token, "print a new token and its line for the tokens file, and end")
       ->expected(2)
       ->type_name("submit|read SUBJECT");
@@ -103,7 +126,8 @@ Options read_options(int argc, char** argv) {
   else if (const std::string why = split_listen(listen, config); !why.empty()) options.exit = wrong("--listen " + why);
   else if (!is_loopback(config.address) && config.tokens.empty())
     options.exit = wrong("--listen " + config.address + " can be reached by others: give --tokens FILE");
-  else if (!fs::exists(config.program)) options.exit = wrong("there is no " + config.program.string() + "; give --talus");
+  else if (!fs::exists(config.program))
+    options.exit = wrong("there is no " + config.program.string() + "; give --talus");
   if (!options.exit && place == "slurm") {
     try {
       config.slurm = slurm.empty() ? executor::SlurmConfig{} : executor::read_slurm_config(slurm);

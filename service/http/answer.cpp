@@ -49,7 +49,8 @@ bool matches(const std::string& if_none_match, const std::string& tag) {
 }
 
 void tag(Answer& answer, const Incoming& request) {
-  if ((request.method != "GET" && request.method != "HEAD") || answer.status != 200 || answer.stream) return;
+  if ((request.method != "GET" && request.method != "HEAD") || answer.status != 200 || answer.type == event_stream)
+    return;
   const std::string etag = '"' + sha256(answer.body).substr(0, 24) + '"';
   answer.headers.emplace_back("ETag", etag);
   answer.headers.emplace_back("Cache-Control", "no-cache");

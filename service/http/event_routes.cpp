@@ -82,7 +82,7 @@ Answer events(Exchange& exchange, Service& service) {
   // The exchange's request is gone when the stream runs: it gets a copy.
   const auto place = std::make_shared<Place>(service);
   const auto request = std::make_shared<Incoming>(exchange.request);
-  Answer answer{.type = "text/event-stream"};
+  Answer answer{.type = event_stream};
   answer.stream = [&service, place, request, captured = exchange.captured, subject = exchange.subject,
                    role = exchange.role, base = exchange.base, seen](const Sink& sink) {
     const Exchange copy{.request = *request, .captured = captured, .subject = subject, .role = role, .base = base};

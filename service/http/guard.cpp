@@ -48,9 +48,25 @@ bool hides_control(std::string_view value) {
   return false;
 }
 
-bool is_target(std::string_view text) {
-  return text.starts_with('/') &&
-         std::all_of(text.begin(), text.end(), [](unsigned char c) { return c > 32 && c < 127; });
+/// What a request target names.
+struct Target {
+  std::string_view authority = {};  ///< of the absolute form only
+  std::string path = {};            ///< with the query; "*": the server as a whole
+};
+
+/// RFC 9112 3.2: the origin form, the absolute form of http URIs, and for OPTIONS the asterisk form.
+std::optional<Target> read_target(std::string_view method, std::string_view text) {
+  constexpr std::string_view scheme = "http://";
+  if (!std::all_of(text.begin(), text.end(), [](unsigned char c) { return c > 32 && c < 127; })) return std::nullopt;
+  const std::string_view all = method == "OPTIONS" ? "*" : "/";  // 3.2.4: for OPTIONS no path is the server, too
+  if (text.starts_with('/') || (text == "*" && text == all)) return Target{.path = std::string(text)};
+  if (lower(text.substr(0, scheme.size())) != scheme) return std::nullopt;
+  text.remove_prefix(scheme.size());
+  const std::string_view authority = text.substr(0, text.find_first_of("/?#"));
+  if (authority.empty() || authority.starts_with(':')) return std::nullopt;  // RFC 9110 4.2.1: no host
+  text.remove_prefix(authority.size());
+  if (text.empty()) return Target{authority, std::string(all)};
+  return Target{authority, (text.starts_with('/') ? "" : "/") + std::string(text)};
 }
 
 Head refused(int status, std::string why) { return {.status = status, .why = std::move(why), .keep_alive = false}; }
@@ -59,6 +75,16 @@ bool is_loopback_name(std::string_view host) {
   if (host.starts_with('[')) return host.substr(0, host.find(']') + 1) == "[::1]";
   host = host.substr(0, host.find(':'));
   return host == "localhost" || host == "127.0.0.1";
+}
+
+/// Why a host is not one that we answer to.
+std::optional<Head> judge_host(std::string_view host, const GuardLimits& limits) {
+  if (host.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:[]_") !=
+      std::string_view::npos)
+    return refused(400, "Host is not a name");
+  if (limits.loopback_names_only && !host.empty() && !is_loopback_name(host))
+    return refused(403, "without tokens talusd answers only to localhost, 127.0.0.1 and [::1]");
+  return std::nullopt;
 }
 
 struct Line {
@@ -105,14 +131,15 @@ Head judge(std::string_view head, const GuardLimits& limits) {
   if (protocol != "HTTP/1.1" && protocol != "HTTP/1.0") return refused(505, "only HTTP/1.1 and 1.0 are spoken here");
   if (target.size() > limits.target_bytes)
     return refused(414, "the URI is longer than " + std::to_string(limits.target_bytes) + " bytes");
-  if (!is_target(target)) return refused(400, "the request target is not a path");
+  const std::optional<Target> wanted = read_target(method, target);
+  if (!wanted) return refused(400, "the request target is neither a path nor an http URI");
 
   std::vector<Line> lines;
   // Without the empty line at the end.
   if (auto bad = split(head.substr(first + 2, head.size() - first - 4), limits, lines)) return *bad;
 
   Head good{.method = std::string(method), .keep_alive = protocol == "HTTP/1.1"};
-  good.rewritten = good.method + " " + std::string(target) + " HTTP/1.1\r\n";
+  good.rewritten = good.method + " " + wanted->path + " HTTP/1.1\r\n";
   const auto count = [&](std::string_view name) {
     return std::count_if(lines.begin(), lines.end(), [&](const Line& line) { return line.name == name; });
   };
@@ -121,7 +148,19 @@ Head judge(std::string_view head, const GuardLimits& limits) {
   if (count("transfer-encoding") > 0) return refused(411, "chunked bodies are not taken; send a Content-Length");
   if (count("content-length") > 1) return refused(400, "Content-Length stands more than once");
   if (count("host") == 0 && good.keep_alive) return refused(400, "a Host is needed");
-  std::string_view host;
+
+  const auto named = std::find_if(lines.begin(), lines.end(), [](const Line& line) { return line.name == "host"; });
+  std::string_view host = named == lines.end() ? "" : named->value;
+  if (auto bad = judge_host(host, limits)) return *bad;
+  if (!wanted->authority.empty()) {  // RFC 9112 3.2.2: it stands for Host
+    host = wanted->authority;
+    if (auto bad = judge_host(host, limits)) return *bad;
+    if (named == lines.end())
+      lines.push_back({"host", host});
+    else
+      named->value = host;
+  }
+
   for (const Line& line : lines) {
     if (line.name == "content-length") {
       const char* end = line.value.data() + line.value.size();
@@ -142,15 +181,9 @@ Head judge(std::string_view head, const GuardLimits& limits) {
       if (count(line.name) > 1 && line.name != "accept" && line.name != "prefer" && line.name != "if-none-match")
         return refused(400, line.name + " stands more than once");
       if (hides_control(line.value)) return refused(400, "a header value hides control characters");
-      if (line.name == "host") host = line.value;
       good.rewritten += line.name + ": " + std::string(line.value) + "\r\n";
     }
   }
-  if (host.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:[]_") !=
-      std::string_view::npos)
-    return refused(400, "Host is not a name");
-  if (limits.loopback_names_only && !host.empty() && !is_loopback_name(host))
-    return refused(403, "without tokens talusd answers only to localhost, 127.0.0.1 and [::1]");
   if (limits.loopback_names_only && count("origin") > 0) {
     const auto origin =
         std::find_if(lines.begin(), lines.end(), [](const Line& line) { return line.name == "origin"; });

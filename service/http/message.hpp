@@ -32,6 +32,8 @@ struct Incoming {
 /// Writes one piece of a stream; false: the other side has gone, or we are stopping.
 using Sink = std::function<bool(const std::string&)>;
 
+inline constexpr const char* event_stream = "text/event-stream";
+
 struct Answer {
   int status = 200;
   std::string type = "application/json";

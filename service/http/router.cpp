@@ -36,10 +36,17 @@ void Router::add(const std::string& method, const std::string& pattern, Role rol
 Router::Found Router::find(const std::string& method, const std::string& path) const {
   Found found;
   const std::vector<std::string> segments = segments_of(path);
+  const auto allow = [&found](const std::string& known) {
+    found.allow += (found.allow.empty() ? "" : ", ") + known + (known == "GET" ? ", HEAD" : "");
+  };
   for (const Route& route : routes_) {
     std::vector<std::string> captured;
+    if (path == "*") {
+      if (found.allow.find(route.method) == std::string::npos) allow(route.method);
+      continue;
+    }
     if (!matches(route.segments, segments, captured)) continue;
-    found.allow += (found.allow.empty() ? "" : ", ") + route.method + (route.method == "GET" ? ", HEAD" : "");
+    allow(route.method);
     if (route.method != method && !(route.method == "GET" && method == "HEAD")) continue;
     found.handler = &route.handler;
     found.role = route.role;

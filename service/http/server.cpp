@@ -6,12 +6,25 @@
 #include <atomic>
 
 #include "http/problem.hpp"
+#include "support/clock.hpp"
 #include "support/log.hpp"
 
 namespace talus::service {
 namespace {
 
 constexpr int backlog = 1024;  ///< the library's own is 5
+
+/// RFC 9110 8.6: no length where there can be no content (204), where it is not that of the content that was not sent
+/// again (304), and where a stream has none. The library writes a head as one piece, and 0 for each of these.
+std::string without_false_length(std::string_view head) {
+  constexpr std::string_view none = "\r\nContent-Length: 0";
+  std::string text(head);
+  const std::size_t at = text.find(none);
+  const std::string_view status = head.substr(std::min(head.size(), std::string_view("HTTP/1.1 ").size()), 3);
+  const bool is_false = status == "204" || status == "304" || head.find(event_stream) != std::string_view::npos;
+  if (is_false && at != std::string::npos) text.erase(at, none.size());
+  return text;
+}
 
 /// One judged request as the library's stream: reads come from memory, writes go to the client. Without `override`:
 /// which of these there are depends on the library's version.
@@ -33,7 +46,10 @@ class RequestStream : public httplib::Stream {
     return static_cast<ssize_t>(n);
   }
   ssize_t write(const char* data, size_t size) {
-    return connection_.write(data, size) ? static_cast<ssize_t>(size) : -1;
+    const std::string_view bytes(data, size);
+    const bool good = begun_ ? connection_.write(data, size) : connection_.write(without_false_length(bytes));
+    begun_ = true;
+    return good ? static_cast<ssize_t>(size) : -1;
   }
   void get_remote_ip_and_port(std::string& ip, int& port) const { ip.clear(), port = 0; }
   void get_local_ip_and_port(std::string& ip, int& port) const { ip.clear(), port = 0; }
@@ -43,6 +59,7 @@ class RequestStream : public httplib::Stream {
   Connection& connection_;
   std::string input_;
   std::size_t at_ = 0;
+  bool begun_ = false;  ///< the head has been written
 };
 
 Incoming incoming(const httplib::Request& request) {
@@ -62,11 +79,12 @@ Incoming incoming(const httplib::Request& request) {
 
 void fill(httplib::Response& response, Answer answer) {
   response.status = answer.status;
+  response.set_header("Date", http_date(system_now()));
   response.set_header("X-Content-Type-Options", "nosniff");
   response.set_header("Accept-Ranges", "none");  // the library claims "bytes" for HEAD
   for (const auto& [name, value] : answer.headers) response.set_header(name, value);
+  if (answer.type == event_stream) response.set_header("Cache-Control", "no-store");
   if (answer.stream) {
-    response.set_header("Cache-Control", "no-store");
     response.set_chunked_content_provider(answer.type, [stream = answer.stream](size_t, httplib::DataSink& sink) {
       stream([&sink](const std::string& piece) { return sink.write(piece.data(), piece.size()); });
       sink.done();
@@ -84,6 +102,7 @@ std::string raw_problem(const BadRequest& bad) {
   body["detail"] = bad.why;
   const std::string text = dump(body) + "\n";
   return "HTTP/1.1 " + std::to_string(bad.status) + " " + status_text(bad.status) +
+         "\r\nDate: " + http_date(system_now()) +
          "\r\nContent-Type: application/json\r\nContent-Length: " + std::to_string(text.size()) +
          "\r\nConnection: close\r\n\r\n" + text;
 }

@@ -27,7 +27,7 @@ Json links(const Job& job, const Exchange& exchange) {
   if (job.planned == 0 || job.state == JobState::dismissed) return all;
   all.push_back(link(exchange, path + "/histogram", "related", "Histogram of what is done so far"));
   all.push_back(link(exchange, path + "/realizations", "related", "Realizations"));
-  all.push_back(link(exchange, path + "/events", "related", "Events", "text/event-stream"));
+  all.push_back(link(exchange, path + "/events", "related", "Events", event_stream));
   return all;
 }
 

@@ -1,5 +1,7 @@
 #include "http/tokens.hpp"
 
+#include <strings.h>
+
 #include <sstream>
 #include <stdexcept>
 
@@ -44,9 +46,11 @@ Tokens::Tokens(const std::filesystem::path& file) : wanted_(true) {
 }
 
 std::optional<Bearer> Tokens::find(const std::string& authorization) const {
-  constexpr std::string_view scheme = "Bearer ";
-  if (!authorization.starts_with(scheme)) return std::nullopt;
-  const std::string hash = sha256(std::string_view(authorization).substr(scheme.size()));
+  constexpr std::string_view scheme = "bearer ";
+  if (::strncasecmp(authorization.c_str(), scheme.data(), scheme.size()) != 0) return std::nullopt;
+  const std::size_t begin = authorization.find_first_not_of(' ', scheme.size());
+  if (begin == std::string::npos) return std::nullopt;
+  const std::string hash = sha256(std::string_view(authorization).substr(begin));
   std::optional<Bearer> found;
   for (const Entry& entry : entries_)  // all of them, so that the time does not tell which
     if (equal_in_constant_time(entry.hash, hash)) found = entry.bearer;

@@ -24,7 +24,7 @@ class Tokens {
   explicit Tokens(const std::filesystem::path& file);
 
   bool wanted() const { return wanted_; }
-  /// @param authorization  the header: "Bearer ..."
+  /// @param authorization  the header: "Bearer ...", the scheme in any case (RFC 9110 11.1)
   std::optional<Bearer> find(const std::string& authorization) const;
 
  private:

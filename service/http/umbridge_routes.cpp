@@ -140,7 +140,8 @@ Answer guarded(const std::function<Json()>& action) try {
 } catch (const Refusal& e) {
   if (e.reason != Reason::bad_request && e.reason != Reason::quota) throw;
   std::string message = e.what();
-  for (const Fault& fault : e.faults) message += "; " + fault.pointer + " " + fault.message;
+  for (const Fault& fault : e.faults)
+    if (fault.message != e.what()) message += "; " + fault.pointer + " " + fault.message;
   return error_answer({"InvalidInput", message});
 }
 

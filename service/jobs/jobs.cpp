@@ -40,7 +40,21 @@ class NewDirectory {
   bool kept_ = false;
 };
 
-std::string text(double value) { return Json(value).dump(); }
+/// Which of its means `talus` says it could not use.
+const char* unusable(const std::string& said) {
+  const auto has = [&said](const char* words) { return said.find(words) != std::string::npos; };
+  if (has("gnuplot not found")) return "gnuplot, which draws the pictures, is missing here";
+  if (has("gnuplot failed") || has("cannot start gnuplot"))
+    return "gnuplot, which draws the pictures, could not be run";
+  return "a file of the service cannot be read or written";
+}
+
+/// As people write it: 51, not 51.0.
+std::string text(double value) {
+  std::string digits = Json(value).dump();
+  if (digits.ends_with(".0")) digits.resize(digits.size() - 2);
+  return digits;
+}
 
 double core_hours(double particles, double steps, double runs) {
   return 2.0 * particles * steps * runs / evaluations_per_second / 3600.0;
@@ -71,14 +85,15 @@ Outcome Jobs::run(const Command& command, std::chrono::milliseconds limit, bool 
   } const releaser{*this, heavy};
   Outcome outcome = run_to_end(command, data_.scratch(), limit, [this] { return stopping_.load(); });
   if (stopping_) throw Refusal(Reason::unavailable, "talusd is stopping");
-  if (outcome.timed_out) throw Refusal(Reason::timeout, "this takes longer than " + std::to_string(limit.count() / 1000) + " s");
+  if (outcome.timed_out)
+    throw Refusal(Reason::timeout, "this takes longer than " + std::to_string(limit.count() / 1000) + " s");
   // Its own word for "cannot read or write", or an answer cut short.
   constexpr int io_exit = 5;
   const bool cut_short = outcome.out.empty() ? false : outcome.out.back() != '\n';
   if (!outcome.end.signal && (outcome.end.exit_code == io_exit || cut_short)) {
     log_error("talus_cannot_write", {{"said", outcome.err}});
     throw Refusal(disk_left(config_.data) < crowded_bytes ? Reason::disk_full : Reason::unavailable,
-                  "a file of the service cannot be read or written");
+                  unusable(outcome.err));
   }
   return outcome;
 }
@@ -90,7 +105,8 @@ void Jobs::refuse_case(const Outcome& outcome, const std::string& pointer) const
     for (const Json& fault : said.at("faults"))
       faults.push_back({pointer + fault.at("pointer").get<std::string>(), fault.at("message").get<std::string>()});
   if (outcome.end.signal || (faults.empty() && outcome.end.exit_code != 3)) {
-    log_error("talus_broke", {{"exit_code", outcome.end.exit_code}, {"signal", outcome.end.signal}, {"said", outcome.err}});
+    log_error("talus_broke",
+              {{"exit_code", outcome.end.exit_code}, {"signal", outcome.end.signal}, {"said", outcome.err}});
     if (outcome.end.signal || outcome.err.find("bad_alloc") != std::string::npos)
       throw Refusal(Reason::unprocessable, "the case takes more memory or time than it may to be looked at");
     throw Refusal(Reason::internal, "the case could not be checked");
@@ -111,8 +127,8 @@ Json Jobs::validate(const Json& document, const std::string& pointer) {
 
 void Jobs::check_queue(const std::string& subject) const {
   const auto refuse = [](std::int64_t open, std::int64_t most, const char* whose) {
-    Refusal full(Reason::queue_full, std::string(whose) + " " + std::to_string(open) + " jobs are waiting or running; at most " +
-                                         std::to_string(most) + " may");
+    Refusal full(Reason::queue_full, std::string(whose) + " " + std::to_string(open) +
+                                         " jobs are waiting or running; at most " + std::to_string(most) + " may");
     full.retry_after = 60;
     throw full;
   };
@@ -129,10 +145,12 @@ void Jobs::check_disk() const {
                                          std::to_string(config_.quotas.disk_bytes >> 20) + " must stay free");
 }
 
-void Jobs::check_size(double particles, double steps, std::int64_t realizations) const {
+void Jobs::check_size(double particles, double steps, std::int64_t realizations, const std::string& only_at) const {
   Checker check;
   const auto at_most = [&](const char* pointer, const char* what, double asked, double most) {
-    if (asked > most) check.fault(pointer, std::string(what) + ": " + text(asked) + ", at most " + text(most));
+    if (asked > most)
+      check.fault(only_at.empty() ? pointer : only_at,
+                  std::string(what) + ": " + text(asked) + ", at most " + text(most));
   };
   const double hours = core_hours(particles, steps, static_cast<double>(realizations));
   at_most("/inputs/case/particle_spacing_m", "particles", particles, config_.quotas.particles);
@@ -216,7 +234,7 @@ bool Jobs::extend(const Job& job, std::int64_t more, const Store::Answer& answer
   const std::lock_guard one_at_a_time(extending_);  // two at once would both add to the same number
   const std::int64_t planned = store_.job(job.id)->planned + more;
   ended(job.state) ? check_queue(job.subject) : check_disk();  // an ended one will be open again
-  check_size(job.particles, job.steps, planned);
+  check_size(job.particles, job.steps, planned, "/realizations");
   const StudyDirectory directory{data_.job(job.id)};
   const Outcome prepared = run(commands_.prepare(directory.resolved_case(), directory, planned, job.seed), seconds(60));
   if (prepared.end.signal || prepared.end.exit_code != 0)

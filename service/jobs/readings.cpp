@@ -5,6 +5,7 @@
 #include "jobs/jobs.hpp"
 #include "support/digest.hpp"
 #include "support/files.hpp"
+#include "support/log.hpp"
 
 namespace talus::service {
 namespace {
@@ -27,8 +28,9 @@ void prune(const fs::path& directory, std::size_t keep) {
 }
 
 [[noreturn]] void broke(const Outcome& outcome, const char* what) {
-  throw Refusal(Reason::internal, std::string(what) + " could not be made" +
-                                      (outcome.err.find("gnuplot") != std::string::npos ? ": gnuplot is missing here" : ""));
+  log_error("talus_broke",
+            {{"exit_code", outcome.end.exit_code}, {"signal", outcome.end.signal}, {"said", outcome.err}});
+  throw Refusal(Reason::internal, std::string(what) + " could not be made");
 }
 
 /// Leaves out what has no value: `talus` says null.
@@ -121,10 +123,12 @@ std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
 
 Json Jobs::evaluate(const Json& document) {
   const Json demand = validate(document, ""), &particles = demand.at("particles");
-  check_size(particles.at("soil").get<double>() + particles.at("wall").get<double>(), demand.at("steps").get<double>(), 1);
+  const double count = particles.at("soil").get<double>() + particles.at("wall").get<double>();
+  check_size(count, demand.at("steps").get<double>(), 1);
   const Scratch scratch(data_.scratch());
   write_file(scratch.path / "case.json", dump(document));
-  const Outcome outcome = run(commands_.median(scratch.path / "case.json", scratch.path / "run"), config_.time_limit, true);
+  const Outcome outcome =
+      run(commands_.median(scratch.path / "case.json", scratch.path / "run"), config_.time_limit, true);
   if (outcome.end.exit_code == 3 && !outcome.end.signal) throw Refusal(Reason::bad_request, outcome.err);
   const auto text = read_file(scratch.path / "run" / "result.json", 1 << 20);
   if (outcome.end.signal || outcome.end.exit_code != 0 || !text)

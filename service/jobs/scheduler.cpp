@@ -151,7 +151,8 @@ bool Scheduler::room_on_disk() {
 /// Starts runs while there are free places, room on the disk and work.
 void Scheduler::fill() {
   while (executor_->has_room()) {
-    if (!room_on_disk()) throw std::runtime_error("less disk is left than half of --min-disk, or 8 MiB: no run is started");
+    if (!room_on_disk())
+      throw std::runtime_error("less disk is left than half of --min-disk, or 8 MiB: no run is started");
     const std::optional<Claim> claim = store_.claim(lease_);
     if (!claim) return;
     try {

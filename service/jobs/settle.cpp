@@ -135,7 +135,8 @@ void Scheduler::settle_publisher(Publisher& publisher, ProcessEnd end) {
   }
   Json realizations;
   try {
-    realizations = Json::parse(read_file(publisher.study.summary(), max_summary_bytes).value_or("null")).at("realizations");
+    realizations =
+        Json::parse(read_file(publisher.study.summary(), max_summary_bytes).value_or("null")).at("realizations");
   } catch (const nlohmann::json::exception& e) {
     log_error("no_statistics", {{"job", job.id}, {"why", e.what()}});
     store_.finish(job.number, JobState::failed, "the statistics cannot be read");
@@ -149,13 +150,15 @@ void Scheduler::settle_publisher(Publisher& publisher, ProcessEnd end) {
     return;
   }
   const auto done = realizations.at("done").get<std::int64_t>(), failed = realizations.at("failed").get<std::int64_t>();
-  const bool too_many = done == 0 || static_cast<double>(failed) > job.max_failed_share * static_cast<double>(done + failed);
+  const bool too_many =
+      done == 0 || static_cast<double>(failed) > job.max_failed_share * static_cast<double>(done + failed);
   std::string message = std::to_string(done) + " realizations done";
   if (failed > 0) message += ", " + std::to_string(failed) + " failed";
   if (too_many) message += ": more than the share of " + Json(job.max_failed_share).dump() + " that may";
   if (realizations.at("stopped_early") == true) message += "; stopped early, the mean is known well enough";
   if (store_.finish(job.number, too_many ? JobState::failed : JobState::successful, message)) {
-    log_info("job_ended", {{"job", job.id}, {"state", too_many ? "failed" : "successful"}, {"done", done}, {"failed", failed}});
+    log_info("job_ended",
+             {{"job", job.id}, {"state", too_many ? "failed" : "successful"}, {"done", done}, {"failed", failed}});
     std::error_code ignored;
     fs::remove_all(publisher.study.root / "work", ignored);
   }

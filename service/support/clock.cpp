@@ -49,6 +49,15 @@ std::string utc_text(Milliseconds time) {
   return text;
 }
 
+std::string http_date(Milliseconds time) {
+  const auto seconds = static_cast<std::time_t>(time / 1000);
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[48];
+  std::strftime(text, sizeof text, "%a, %d %b %Y %H:%M:%S GMT", &parts);
+  return text;
+}
+
 std::optional<Milliseconds> utc_time(std::string_view text) {
   using namespace std::chrono;
   Reader reader{text};

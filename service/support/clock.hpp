@@ -19,7 +19,10 @@ Milliseconds system_now();
 /// "2026-01-31T12:00:00.123Z" (RFC 3339)
 std::string utc_text(Milliseconds time);
 
-/// The inverse: any date-time of RFC 3339 5.6, with any offset; fractions are cut to milliseconds.
+/// "Sat, 31 Jan 2026 12:00:00 GMT" (RFC 9110 5.6.7), as HTTP wants it.
+std::string http_date(Milliseconds time);
+
+/// The inverse of utc_text: any date-time of RFC 3339 5.6, with any offset; fractions are cut to milliseconds.
 std::optional<Milliseconds> utc_time(std::string_view text);
 
 }  // namespace talus::service

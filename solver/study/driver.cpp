@@ -310,6 +310,7 @@ void Driver::report(bool now) {
 }
 
 Outcome Driver::run() {
+  ledger_.make_directories();
   wait_for_orphans();
   if (options_.retry_failed) ledger_.forget_failures();
   adopt();

@@ -69,15 +69,22 @@ void on_disk(const fs::path& path, Action action) {
 Ledger::Ledger(StudyPaths paths, const Plan& plan)
     : paths_(std::move(paths)), seed_(plan.seed), case_hash_(plan.case_hash) {
   on_disk(paths_.root, [&] {
-    for (const fs::path& directory : {paths_.runs(), paths_.floor(), paths_.work(), paths_.profiles()})
-      fs::create_directories(directory);
     scan(false);
     scan(true);
   });
 }
 
+void Ledger::make_directories() const {
+  on_disk(paths_.root, [&] {
+    for (const fs::path& directory : {paths_.runs(), paths_.floor(), paths_.work(), paths_.profiles()})
+      fs::create_directories(directory);
+  });
+}
+
 void Ledger::scan(bool floor) {
-  for (const auto& entry : fs::directory_iterator(floor ? paths_.floor() : paths_.runs())) {
+  const fs::path directory = floor ? paths_.floor() : paths_.runs();
+  if (!fs::exists(directory)) return;  // nothing has been run yet
+  for (const auto& entry : fs::directory_iterator(directory)) {
     const std::string name = entry.path().filename().string();
     if (const auto failed = index_of(name, ".failed.json")) {
       const Job job{floor, *failed};

@@ -22,9 +22,13 @@ struct Failure {
 
 class Ledger {
  public:
-  /// Reads what earlier processes have finished; a result that cannot be read counts as not there.
-  /// @throws IoError when a result belongs to another study, or a directory cannot be made
+  /// Reads what earlier processes have finished, and writes nothing; a result that cannot be read counts as not there.
+  /// @throws IoError when a result belongs to another study, or a directory cannot be read
   Ledger(StudyPaths paths, const Plan& plan);
+
+  /// Makes the directories that runs and commits need.
+  /// @throws IoError
+  void make_directories() const;
 
   const std::vector<Record>& runs() const { return runs_; }    ///< in order of index
   const std::vector<Record>& floor() const { return floor_; }  ///< in order of k

@@ -69,6 +69,11 @@ class Authorisation(ServiceTest):
         )
         self.assertEqual(self.daemon.request("DELETE", f"/jobs/{job}", token=self.tokens["anna"]).status, 200)
 
+    def test_the_scheme_is_known_in_any_case(self):  # RFC 9110 11.1
+        for scheme, status in (("Bearer", 200), ("bearer", 200), ("BEARER", 200), ("Basic", 401), ("Bear", 401)):
+            reply = self.daemon.get("/jobs", headers={"Authorization": f"{scheme} {self.tokens['anna']}"})
+            self.assertEqual(reply.status, status, scheme)
+
     def test_keys_of_two_subjects_do_not_meet(self):
         headers = {"Idempotency-Key": "same", "Prefer": "respond-async"}
         for who, text in (("anna", "a"), ("ben", "b")):

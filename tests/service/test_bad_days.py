@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 """Full disks, files that cannot be written, clocks that jump."""
 
+import fcntl
 import os
 import shutil
 import sqlite3
 import subprocess
+import threading
 import time
 
-from daemon import TALUSD, Daemon, ServiceTest, main, study
+from daemon import TALUS, TALUSD, Daemon, ServiceTest, main, study
 
 
 class BadDays(ServiceTest):
@@ -73,6 +75,31 @@ class BadDays(ServiceTest):
             self.daemon.post("/processes/echo/execution", echo, headers={"Prefer": "respond-async"}).status, 201
         )
 
+    def test_gnuplot_that_is_missing_or_refused(self):
+        """The answer names gnuplot and no file; what needs no picture is answered all the same."""
+        programs = self.dir / "programs"
+        programs.mkdir()
+        talus = self.dir / "talus"
+        talus.write_text(f'#!/bin/sh\nPATH={programs}\nexec {TALUS} "$@"\n')
+        talus.chmod(0o755)
+        self.start("--talus", talus)
+        job = self.daemon.submit(study(1))
+        self.daemon.wait_for(job)
+        path = f"/jobs/{job}/realizations/0"
+        gnuplot = programs / "gnuplot"
+        for script, said in (
+            (None, "gnuplot, which draws the pictures, is missing here"),
+            ("#!/bin/sh\nkill -SYS $$\n", "gnuplot, which draws the pictures, could not be run"),
+            ("#!/bin/sh\necho no memory >&2\nexit 1\n", "gnuplot, which draws the pictures, could not be run"),
+        ):
+            if script:
+                gnuplot.write_text(script)
+                gnuplot.chmod(0o755)
+            for what in ("field", "profile"):
+                document = self.problem(self.daemon.get(f"{path}/{what}?format=svg"), 503)
+                self.assertEqual(document["detail"], said)
+                self.assertEqual(self.daemon.get(f"{path}/{what}").status, 200)
+
     def test_a_data_directory_of_someone_else(self):
         data = self.dir / "data"
         self.start()
@@ -89,6 +116,15 @@ class BadDays(ServiceTest):
         )
         self.assertEqual(done.returncode, 5, done.stderr)
         self.assertIn(str(data), done.stderr)
+
+    def test_a_talusd_killed_a_moment_ago(self):
+        """Its locks outlive it for that moment; who starts the next at once need not try again."""
+        (self.dir / "data").mkdir()
+        with open(self.dir / "data/talusd.lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            threading.Timer(0.5, lambda: fcntl.flock(lock, fcntl.LOCK_UN)).start()
+            self.start()
+        self.assertEqual(self.daemon.get("/healthz").status, 200)
 
     def test_a_database_that_is_none_of_ours(self):
         data = self.dir / "data"

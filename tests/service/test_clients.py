@@ -102,6 +102,10 @@ class Umbridge(ServiceTest):
             error("/Evaluate", {"name": "slope", **wrong}, "InvalidInput")
         for body in ("", "{", "[]"):
             self.assertEqual(self.daemon.post("/Evaluate", body).status, 400)
+        self.assertEqual(
+            self.daemon.post("/Evaluate", "{").json,
+            {"error": {"type": "InvalidInput", "message": "the body is not JSON"}},
+        )
 
     def test_the_quotas_hold_here_too(self):
         body = {"name": "slope", "input": [[0.0] * self.TERMS, [1e6]], "config": {"parameters": ["end_s"]}}

@@ -13,6 +13,10 @@ TEST(Clock, TextAndBack) {
   EXPECT_EQ(utc_text(1'769'860'800'123), "2026-01-31T12:00:00.123Z");
 }
 
+TEST(Clock, DatesOfHttp) {
+  EXPECT_EQ(http_date(784'111'777'999), "Sun, 06 Nov 1994 08:49:37 GMT");  // RFC 9110 5.6.7
+}
+
 TEST(Clock, EveryFormOfRfc3339) {
   const Milliseconds noon = 1'769'860'800'000;
   EXPECT_EQ(utc_time("2026-01-31T12:00:00Z"), noon);

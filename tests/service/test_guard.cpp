@@ -41,10 +41,35 @@ TEST(Guard, RequestLines) {
   EXPECT_EQ(status("GET / HTTP/2.0"), 505);
   EXPECT_EQ(status("GET /"), 400);
   EXPECT_EQ(status("GET  / HTTP/1.1"), 400);
-  EXPECT_EQ(status("GET http://a/ HTTP/1.1"), 400);
   EXPECT_EQ(status("GET /\x01 HTTP/1.1"), 400);
   EXPECT_EQ(status("G@T / HTTP/1.1"), 400);
   EXPECT_EQ(status("GET /" + std::string(100, 'a') + " HTTP/1.1"), 414);
+}
+
+TEST(Guard, TargetsInAbsoluteForm) {  // RFC 9112 3.2.2: to be taken, and their authority stands for Host
+  EXPECT_EQ(of("GET http://b:80/jobs?x=1 HTTP/1.1").rewritten,
+            of("GET /jobs?x=1 HTTP/1.1", "Host: b:80\r\n").rewritten);
+  EXPECT_EQ(of("GET HTTP://b/ HTTP/1.1").rewritten, of("GET / HTTP/1.1", "Host: b\r\n").rewritten);
+  EXPECT_EQ(of("GET http://b HTTP/1.1").rewritten, of("GET / HTTP/1.1", "Host: b\r\n").rewritten);
+  EXPECT_EQ(of("GET http://b?x=1 HTTP/1.1").rewritten, of("GET /?x=1 HTTP/1.1", "Host: b\r\n").rewritten);
+  EXPECT_EQ(of("GET http://b/http://c/ HTTP/1.1").rewritten, of("GET /http://c/ HTTP/1.1", "Host: b\r\n").rewritten);
+  EXPECT_EQ(of("GET http://b/ HTTP/1.0", "").rewritten, of("GET / HTTP/1.0", "Host: b\r\n").rewritten);
+  for (const char* target : {"http:///jobs", "http://:80/jobs", "http://u@b/", "http://b%0d%0a/", "http://b,c/",
+                             "http:/b", "http:", "https://b/", "ftp://b/", "b:80", "jobs", "http://b/\x01", "?x=1"})
+    EXPECT_EQ(status("GET " + std::string(target) + " HTTP/1.1"), 400) << target;
+  EXPECT_EQ(status("GET http://b/ HTTP/1.1", ""), 400);
+  EXPECT_EQ(status("GET http://b/ HTTP/1.1", "Host: a/b\r\n"), 400);
+  EXPECT_EQ(status("GET http://b/ HTTP/1.1", "Host: a\r\nHost: b\r\n"), 400);
+  EXPECT_EQ(status("GET http://b/" + std::string(100, 'a') + " HTTP/1.1"), 414);
+}
+
+TEST(Guard, TheAsteriskIsForOptionsAlone) {  // RFC 9112 3.2.4
+  EXPECT_EQ(of("OPTIONS * HTTP/1.1").rewritten, "OPTIONS * HTTP/1.1\r\nhost: a\r\nContent-Length: 0\r\n\r\n");
+  EXPECT_EQ(of("OPTIONS http://a HTTP/1.1").rewritten, of("OPTIONS * HTTP/1.1").rewritten);
+  EXPECT_EQ(of("OPTIONS http://a/ HTTP/1.1").rewritten, of("OPTIONS / HTTP/1.1").rewritten);
+  EXPECT_EQ(status("OPTIONS ** HTTP/1.1"), 400);
+  EXPECT_EQ(status("OPTIONS *?x HTTP/1.1"), 400);
+  EXPECT_EQ(status("GET * HTTP/1.1"), 400);
 }
 
 TEST(Guard, FramingThatTwoReadersCouldTakeDifferently) {
@@ -104,6 +129,17 @@ TEST(Guard, WithoutTokensOnlyLoopbackNamesAndNoOtherSites) {
     EXPECT_EQ(code(std::string("Host: ") + host + "\r\n"), 403) << host;
   EXPECT_EQ(code("Host: localhost\r\nOrigin: https://evil.example\r\n"), 403);
   EXPECT_EQ(code("Host: localhost:80\r\nOrigin: http://localhost:80\r\n"), 0);
+
+  const auto absolute = [&](const std::string& authority, const std::string& headers) {
+    return judge("GET http://" + authority + "/ HTTP/1.1\r\n" + headers + "\r\n", local).status;
+  };
+  EXPECT_EQ(absolute("localhost:80", "Host: localhost:80\r\n"), 0);
+  EXPECT_EQ(absolute("[::1]:80", "Host: localhost\r\n"), 0);
+  EXPECT_EQ(absolute("evil.example", "Host: localhost\r\n"), 403);
+  EXPECT_EQ(absolute("localhost", "Host: evil.example\r\n"), 403);
+  EXPECT_EQ(absolute("localhost.evil.example", "Host: localhost.evil.example\r\n"), 403);
+  EXPECT_EQ(absolute("localhost:80", "Host: localhost:80\r\nOrigin: http://localhost:80\r\n"), 0);
+  EXPECT_EQ(absolute("localhost:80", "Host: localhost:81\r\nOrigin: http://localhost:81\r\n"), 403);
 }
 
 }  // namespace

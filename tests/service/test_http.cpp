@@ -63,6 +63,9 @@ TEST(Routes, AreFoundByMethodAndPath) {
   EXPECT_EQ(wrong.allow, "GET, HEAD, DELETE, OPTIONS");
   EXPECT_EQ(router.find("GET", "/jobs/a/b").allow, "");
   EXPECT_EQ(router.find("GET", "/jobs").allow, "");
+  const Router::Found server = router.find("OPTIONS", "*");
+  EXPECT_FALSE(server.handler);
+  EXPECT_EQ(server.allow, "GET, HEAD, DELETE, OPTIONS");
 }
 
 TEST(Tokens, AreFoundByTheirHash) {
@@ -74,8 +77,11 @@ TEST(Tokens, AreFoundByTheirHash) {
   ASSERT_TRUE(tokens.find("Bearer " + token));
   EXPECT_EQ(tokens.find("Bearer " + token)->subject, "anna");
   EXPECT_EQ(tokens.find("Bearer " + token)->role, Role::submit);
+  for (const char* scheme : {"bearer ", "BEARER ", "bEaReR ", "Bearer  "})  // RFC 9110 11.1, 11.4
+    EXPECT_TRUE(tokens.find(scheme + token)) << scheme;
   for (const std::string& bad :
-       std::vector<std::string>{"", token, "Bearer " + token + " ", "bearer " + token, "Bearer x"})
+       std::vector<std::string>{"", token, "Bearer " + token + " ", "Bearer" + token, "Bearer\t" + token, "Bearer",
+                                "Bearer ", "Basic " + token, " Bearer " + token, "Bearer x"})
     EXPECT_FALSE(tokens.find(bad)) << bad;
 }
 

@@ -2,6 +2,9 @@
 """Requests that nobody should send, and clients that are slow."""
 
 import concurrent.futures
+import datetime
+import email
+import email.utils
 import json
 import os
 import re
@@ -125,6 +128,63 @@ class Probes(ServiceTest):
         one = b"GET /healthz HTTP/1.1\r\n" + HEAD
         answer = self.daemon.raw((one + b"\r\n") * 3 + one + b"Connection: close\r\n\r\n")
         self.assertEqual(answer.count(b"HTTP/1.1 200 OK"), 4)
+
+    def test_targets_in_absolute_form(self):
+        here = b"http://localhost:%d" % self.daemon.port
+
+        def answer(target, host=HEAD, method=b"GET"):
+            head = method + b" " + target + b" HTTP/1.1\r\n" + host + b"Connection: close\r\n\r\n"
+            return self.daemon.raw(head)
+
+        got = answer(here + b"/processes?limit=1")
+        self.assertTrue(got.startswith(b"HTTP/1.1 200 "), got[:200])
+        document = json.loads(got.partition(b"\r\n\r\n")[2])
+        self.assertEqual(document["links"][0]["href"], f"{here.decode()}/processes?limit=1")
+        self.assertTrue(answer(here).startswith(b"HTTP/1.1 200 "))
+        self.assertTrue(answer(here + b"/nothing").startswith(b"HTTP/1.1 404 "))
+        for target in (b"http://evil.example/", b"http://localhost.evil.example/"):
+            self.assertTrue(answer(target).startswith(b"HTTP/1.1 403 "), target)
+        self.assertTrue(answer(here + b"/", b"Host: evil.example\r\n").startswith(b"HTTP/1.1 403 "))
+        for target in (b"http:///jobs", b"http://user@localhost/", b"https://localhost/", b"ftp://localhost/", b"*"):
+            self.assertTrue(answer(target).startswith(b"HTTP/1.1 400 "), target)
+        one = b"GET " + here + b"/healthz HTTP/1.1\r\n" + HEAD
+        self.assertEqual(self.daemon.raw(one + b"\r\n" + one + b"Connection: close\r\n\r\n").count(b"200 OK"), 2)
+
+    def test_options_of_the_server(self):
+        for target in (b"*", b"http://localhost"):
+            answer = self.daemon.raw(b"OPTIONS " + target + b" HTTP/1.1\r\n" + HEAD + b"Connection: close\r\n\r\n")
+            self.assertTrue(answer.startswith(b"HTTP/1.1 204 "), answer[:200])
+            self.assertIn(b"\r\nAllow: GET, HEAD, POST, DELETE, OPTIONS\r\n", answer)
+
+    def test_heads_say_when_and_how_long(self):  # RFC 9110 6.6.1 and 8.6
+        def head(line, more=b""):
+            answer = self.daemon.raw(line + b" HTTP/1.1\r\n" + HEAD + more + b"Connection: close\r\n\r\n")
+            status, _, rest = answer.partition(b"\r\n")
+            headers = email.message_from_bytes(rest)
+            age = datetime.datetime.now(datetime.timezone.utc) - email.utils.parsedate_to_datetime(headers["Date"])
+            self.assertLess(abs(age.total_seconds()), 10)
+            self.assertTrue(headers["Date"].endswith(" GMT"))
+            return int(status.split()[1]), headers
+
+        body = b'{"inputs": {"s": "a", "pause": 9}}'
+        headers = b"Prefer: respond-async\r\nContent-Length: %d\r\n" % len(body)
+        post = b"POST /processes/echo/execution HTTP/1.1\r\n" + HEAD + headers + b"Connection: close\r\n\r\n" + body
+        job = json.loads(self.daemon.raw(post).partition(b"\r\n\r\n")[2])["jobID"].encode()
+        length = str(len(self.daemon.get("/api").body))
+        for line, more, status, expected in (
+            (b"GET /api", b"", 200, length),
+            (b"HEAD /api", b"", 200, length),
+            (b"GET /api", b"If-None-Match: *\r\n", 304, None),
+            (b"OPTIONS /api", b"", 204, None),
+            (b"HEAD /jobs/" + job + b"/events", b"", 200, None),  # a stream has no length
+        ):
+            got, headers = head(line, more)
+            self.assertEqual((got, headers["Content-Length"]), (status, expected), line)
+        self.assertEqual((headers["Content-Type"], headers["ETag"]), ("text/event-stream", None))
+        for line, more, status in ((b"GET /nothing", b"", 404), (b"GET nothing", b"", 400)):
+            got, headers = head(line, more)
+            self.assertEqual(got, status)
+            self.assertGreater(int(headers["Content-Length"]), 0)
 
     def test_request_ids_are_given_back_if_they_are_fit_for_a_log(self):
         def given_back(value):

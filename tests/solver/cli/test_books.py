@@ -107,14 +107,22 @@ class Books(Directory):
 
     def test_one_quantity_is_printed_and_nothing_written(self):
         self.make_all(4)
-        before = sorted(p for p in self.out.rglob("*") if p.is_file())
+        before = sorted(self.out.rglob("*"))
         sample = [load(self.out / f"runs/{i:06}.json")["front_mass_99_m"] for i in range(4)]
         d = self.distribution("--quantity", "front_mass_99_m")
         self.assertEqual((d["quantity"], d["planned"], d["done"], d["failed"], d["n"]), ("front_mass_99_m", 4, 4, 0, 4))
         self.assertAlmostEqual(d["mean"], sum(sample) / 4)
         self.assertEqual((d["min"], d["max"]), (min(sample), max(sample)))
         self.assertEqual(sum(d["histogram"]["counts"]), 4)
-        self.assertEqual(sorted(p for p in self.out.rglob("*") if p.is_file()), before)
+        self.assertEqual(sorted(self.out.rglob("*")), before)
+
+    def test_a_question_before_the_first_run_writes_nothing(self):
+        self.prepare(2)
+        before = sorted(self.out.rglob("*"))
+        self.assertEqual(self.distribution("--quantity", "influence_zone_m")["n"], 0)
+        self.assertEqual(sorted(self.out.rglob("*")), before)
+        self.stats("--from-runs", "--quantity", "influence_zone", code=2)
+        self.assertEqual(sorted(self.out.rglob("*")), before)
 
     def test_bins_are_equal_and_edges_are_those_given(self):
         self.make_all(4)
