@@ -26,7 +26,7 @@ class Slurm : public testing::Test {
         "sbatch",
         "[ -e refuse ] && { echo 'sbatch: error: no such partition' >&2; exit 1; }\n"
         "for last; do :; done; echo \"$last\" > batch; printf '%s\\n' \"$@\" > arguments; echo call >> calls; echo 41");
-    program("squeue", "cat queue.json || exit 1");
+    program("squeue", "[ \"$*\" = '--json --states=all' ] && cat queue.json || exit 1");
     program("scancel", "echo \"$@\" >> cancelled");
     ::setenv("PATH", (fake.path().string() + ":/usr/bin:/bin").c_str(), 1);
     config.poll_s = 0.05;

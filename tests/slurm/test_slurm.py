@@ -212,7 +212,7 @@ class Forgotten(StudyTest):
         self.process.kill()
         self.process.wait()
         self.cluster.run("scancel", "--partition=batch")
-        self.cluster.wait("Slurm to forget", lambda: json.loads(self.cluster.run("squeue", "--json"))["jobs"] == [], 120)
+        self.cluster.wait("Slurm to forget", lambda: json.loads(self.cluster.run("squeue", "--json", "--states=all"))["jobs"] == [], 120)
         self.start()
         self.finishes()
         self.same_as_local()
