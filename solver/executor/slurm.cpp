@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 namespace talus::executor {
@@ -86,6 +87,19 @@ void SlurmExecutor::kill(RunId id) {
                               [](const Entry& e) { return e.ended || e.killed || e.id == 0; });
 }
 
+std::string SlurmExecutor::waits(const std::string& group) const {
+  std::set<std::string> reasons;
+  for (const Batch& batch : batches_)
+    for (const Task& task : batch.tasks) {
+      if (task.over || task.entries.front().run.group != group) continue;
+      if (task.running_since) return {};
+      if (!task.reason.empty()) reasons.insert(task.reason);
+    }
+  std::string text;
+  for (const std::string& reason : reasons) text += (text.empty() ? "waits in Slurm's queue: " : ", ") + reason;
+  return text;
+}
+
 void SlurmExecutor::stop_all() {
   stopping_ = true;
   for (const Entry& entry : waiting_) ended_.push_back({.id = entry.id, .taken = true});
@@ -160,6 +174,7 @@ void SlurmExecutor::judge(Batch& batch) {
         batch.job ? queue_->task(*batch.job, static_cast<std::int64_t>(i)) : std::nullopt;
     const bool alive = queued && queued->alive;
     task.missed = alive ? 0 : task.missed + 1;
+    task.reason = queued ? queued->reason : "";
     if (!queued || !queued->running) {
       task.running_since.reset();
     } else {

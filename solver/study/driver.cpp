@@ -305,6 +305,7 @@ void Driver::report(bool now) {
   p.mean_half_width = mean_half_width(m);
   p.floor_planned = here({.floor = true}) ? plan_.study.noise_floor_replicates : 0;
   p.floor_made = std::min<std::int64_t>(p.floor_planned, std::ssize(ledger_.floor()));
+  p.waits = executor_->waits(plan_.case_hash);
   p.elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
   options_.report(p);
 }

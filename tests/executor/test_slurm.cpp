@@ -220,6 +220,26 @@ TEST_F(Slurm, AnAnswerOfSbatchThatNobodyHeard) {
   EXPECT_EQ(calls(), 1);
 }
 
+TEST_F(Slurm, SaysWhyNothingRuns) {
+  const auto task = [](int index, const std::string& word, const std::string& reason) {
+    return R"({"array_job_id": 41, "array_task_id": )" + std::to_string(index) + R"(, "job_state": ")" + word +
+           R"(", "state_reason": ")" + reason + "\"}";
+  };
+  start("a");
+  start("b");
+  EXPECT_EQ(executor->waits("g"), "");
+  until_submitted();
+  queue(task(0, "PENDING", "Resources") + "," + task(1, "PENDING", "JobHeldUser"));
+  until([&] { return executor->waits("g") == "waits in Slurm's queue: JobHeldUser, Resources"; });
+  EXPECT_EQ(executor->waits("h"), "");
+  queue(task(0, "RUNNING", "None") + "," + task(1, "PENDING", "JobHeldUser"));
+  until([&] { return executor->waits("g").empty(); });
+  batch().write_status({0, 0}, {.end = {}, .seconds = 1.0});
+  queue(task(1, "PENDING", "JobHeldUser"));
+  until([&] { return executor->waits("g") == "waits in Slurm's queue: JobHeldUser"; });
+  EXPECT_EQ(ended.size(), 1u);
+}
+
 TEST_F(Slurm, TakesFewRunsWhileNobodyKnowsHowLongTheyTake) {
   int taken = 0;
   while (executor->has_room() && taken < 1000) start("r" + std::to_string(taken++));

@@ -68,6 +68,15 @@ class SlurmTest(unittest.TestCase):
     def running(self):
         return self.squeue("-tR", "-o%A")
 
+    def releases_until(self, over):
+        """Every array comes held."""
+        def all_released():
+            for job in set(self.squeue("-tPD", "-o%F")):
+                self.cluster.run("scontrol", "release", job, check=False)  # it may just have begun
+            return over()
+
+        self.cluster.wait("the end of all", all_released, 150)
+
 
 class StudyTest(SlurmTest):
     def start(self):
@@ -188,6 +197,14 @@ class Studies(StudyTest):
         self.finishes()
         self.same_as_local()
 
+    def test_held(self):
+        self.configure(sbatch_options=["--hold"])
+        self.start()
+        self.cluster.wait("the study to say so", lambda: "0 failed, 8 running, waits in Slurm's queue: JobHeldUser" in self.said())
+        self.releases_until(lambda: self.process.poll() is not None)
+        self.finishes()
+        self.same_as_local()
+
     def test_refused_by_slurm(self):
         self.configure(partition="nowhere")
         self.start()
@@ -302,6 +319,19 @@ class Service(SlurmTest):
         self.assertTrue(self.running())
         self.start()
         self.finishes(job)
+        self.same_as_local(job)
+
+    def test_a_held_job_says_so(self):
+        self.configure(sbatch_options=["--hold"])
+        self.start()
+        job = self.submit()
+        self.cluster.wait("the job to say so", lambda: "waits" in self.daemon.get(f"/jobs/{job}").json)
+        info = self.daemon.get(f"/jobs/{job}").json
+        self.assertEqual(info["waits"], "waits in Slurm's queue: JobHeldUser")
+        self.assertEqual(info["message"], f"0 of {REALIZATIONS} realizations done; {info['waits']}")
+        self.releases_until(lambda: self.daemon.get(f"/jobs/{job}").json["status"] in OVER)
+        info = self.finishes(job)
+        self.assertNotIn("waits", info)
         self.same_as_local(job)
 
     def test_a_dismissed_job_is_cancelled(self):
