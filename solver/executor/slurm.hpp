@@ -77,6 +77,7 @@ class SlurmExecutor final : public Executor {
   // slurm.cpp: who starts runs, and the round of looks
   void look();
   void collect(Batch& batch);
+  void take_in(Batch& batch, RunPlace place);
   void judge(Batch& batch);
   void lose(Batch& batch, std::size_t index, const std::string& state);
   void end(Entry& entry, Ended how);

@@ -14,7 +14,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "service"))
 from cluster import Cluster  # noqa: E402
-from daemon import TALUS, Daemon, case, digests, main  # noqa: E402
+from daemon import TALUS, TALUSD, Daemon, case, digests, main  # noqa: E402
 
 REALIZATIONS, SEED = 14, 5
 CASE = case(spacing=0.3, end=4.0)  # some two seconds a run
@@ -79,12 +79,12 @@ class SlurmTest(unittest.TestCase):
 
 
 class StudyTest(SlurmTest):
-    def start(self):
+    def start(self, **environment):
         self.log = open(self.dir / "log", "ab")
         self.addCleanup(self.log.close)
         self.process = subprocess.Popen(
             [*self.study(self.dir / "study"), "--executor", "slurm", "--slurm", self.dir / "slurm.json"],
-            env=self.cluster.environment, stdout=subprocess.DEVNULL, stderr=self.log)
+            env={**self.cluster.environment, **environment}, stdout=subprocess.DEVNULL, stderr=self.log)
         self.addCleanup(self.process.kill)
 
     def said(self):
@@ -202,6 +202,12 @@ class Studies(StudyTest):
         self.start()
         self.cluster.wait("the study to say so", lambda: "0 failed, 8 running, waits in Slurm's queue: JobHeldUser" in self.said())
         self.releases_until(lambda: self.process.poll() is not None)
+        self.finishes()
+        self.same_as_local()
+
+    def test_a_directory_that_is_listed_late(self):
+        """As on NFS: what is not listed yet may well be there."""
+        self.start(LD_PRELOAD=str(pathlib.Path(TALUSD).parent.parent / "tests/late_listing.so"))
         self.finishes()
         self.same_as_local()
 
