@@ -8,7 +8,7 @@ build=(cmake ninja-build g++ pkg-config libeigen3-dev libhdf5-dev libboost-dev n
        dpkg-dev file)
 test=(libgtest-dev libbenchmark-dev libvalijson-dev python3-venv ca-certificates nginx openssl systemd python3-seccomp
       sqlite3 e2fsprogs slurm-wlm munge wrk)
-container=(debootstrap buildah iproute2 systemd-container)
+container=(debootstrap buildah netavark iproute2 systemd-container)
 . /etc/os-release
 llvm=$([ "${VERSION_ID%%.*}" = 12 ] && echo 16 || echo 19)  # Debian 12 and 13 share no version
 tsan=("clang-$llvm" "libclang-rt-$llvm-dev" "libomp-$llvm-dev")

@@ -10,11 +10,12 @@ std::int64_t progress(const Job& job) {
 }
 
 std::string message(const Job& job) {
-  if (!job.message.empty()) return job.message;
+  if (ended(job.state)) return job.message;
   if (job.state == JobState::accepted) return "waiting";
   if (job.planned == 0) return "running";
   std::string text = std::to_string(job.done) + " of " + std::to_string(job.planned) + " realizations done";
   if (job.failed > 0) text += ", " + std::to_string(job.failed) + " failed";
+  if (!job.message.empty()) text += "; " + job.message;
   return text;
 }
 
@@ -38,6 +39,7 @@ Json status_info(const Job& job, const Exchange& exchange) {
                {"status", word(job.state)}, {"message", message(job)},           {"created", utc_text(job.created)},
                {"updated", utc_text(job.updated)}, {"progress", progress(job)}};
   if (job.started) info["started"] = utc_text(*job.started);
+  if (!ended(job.state) && !job.message.empty()) info["waits"] = job.message;
   if (job.finished) info["finished"] = utc_text(*job.finished);
   if (job.planned > 0) {
     info["title"] = job.title;

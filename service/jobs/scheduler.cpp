@@ -18,6 +18,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds poll_interval{10};
 constexpr milliseconds idle_interval{500};
 constexpr milliseconds trouble_interval{1000};
+constexpr milliseconds interim_interval{2000};
 constexpr std::uint64_t crowded_bytes = std::uint64_t{8} << 20;  ///< a run that cannot write then is not to blame
 
 std::unique_ptr<executor::Executor> make_executor(const Config& config) {
@@ -95,7 +96,10 @@ void Scheduler::tick() {
     fill();
     publish_complete();
   }
-  if (Steady::now() >= next_interim_) publish_interim();
+  if (Steady::now() < next_interim_) return;
+  next_interim_ = Steady::now() + interim_interval;
+  publish_interim();
+  note_waits();
 }
 
 /// Renews the leases of what runs, ends what has lost its own, and puts back what nobody holds.
@@ -206,12 +210,27 @@ void Scheduler::publish_complete() {
   }
 }
 
-/// Looks now and then whether a study that may stop early may do so.
-void Scheduler::publish_interim() {
-  next_interim_ = Steady::now() + std::chrono::seconds(2);
+std::set<std::string> Scheduler::jobs_at_work() const {
   std::set<std::string> ids;
   for (const auto& [id, worker] : workers_) ids.insert(worker.claim.job_id);
-  for (const std::string& id : ids) {
+  return ids;
+}
+
+/// Jobs that the executor cannot go on with say why.
+void Scheduler::note_waits() {
+  for (const std::string& id : jobs_at_work()) {
+    const std::string why = executor_->waits(id);
+    const std::optional<Job> job = store_.job(id);
+    if (!job || ended(job->state) || job->message == why) continue;
+    store_.note_waits(job->number, why);
+    if (!why.empty()) log_info("waits", {{"job", id}, {"why", why}});
+    changes_.announce();
+  }
+}
+
+/// Looks whether a study that may stop early may do so.
+void Scheduler::publish_interim() {
+  for (const std::string& id : jobs_at_work()) {
     const std::optional<Job> job = store_.job(id);
     if (!job || !job->may_stop_early || ended(job->state) || interim_published_[job->number] == job->done) continue;
     const bool under_way = std::any_of(publishers_.begin(), publishers_.end(),

@@ -8,6 +8,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
+#include <string>
 #include <thread>
 
 #include "executor/executor.hpp"
@@ -72,6 +74,8 @@ class Scheduler {
   void clear_work(const StudyDirectory& study, const RunKey& run);
   void publish_complete();
   void publish_interim();
+  void note_waits();
+  std::set<std::string> jobs_at_work() const;
   void start_publisher(const Job& job, bool interim);
   void settle_publisher(Publisher& publisher, executor::ProcessEnd end);
   void run_echo();

@@ -41,7 +41,7 @@ struct NewJob {
 struct Job : NewJob {
   std::int64_t number = 0;  ///< its row; grows with time
   JobState state = JobState::accepted;
-  std::string message = {};
+  std::string message = {};  ///< how it ended; until then why none of its runs is under way
   Milliseconds created = 0, updated = 0;
   std::optional<Milliseconds> started = {}, finished = {};
   std::int64_t done = 0, failed = 0;  ///< realizations

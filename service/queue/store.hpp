@@ -34,6 +34,8 @@ class Store {
   std::set<std::string> all_ids();
   Census census();
 
+  /// Writes down why no run of an open job is under way; empty: nothing is known.
+  void note_waits(std::int64_t job, const std::string& why);
   /// Ends a job that has not ended yet and of which nothing is queued or leased.
   bool finish(std::int64_t job, JobState state, const std::string& message);
   /// Makes a job dismissed whatever it was; its runs are forgotten, so nobody's attempt is current any more.

@@ -171,6 +171,18 @@ Census Store::census() {
   });
 }
 
+void Store::note_waits(std::int64_t job, const std::string& why) {
+  db_.write([&](SQLite::Database& db) {
+    Statement update(db,
+                     "UPDATE jobs SET message = ?1, updated = ?2, version = version + 1 "
+                     "WHERE number = ?3 AND state IN ('accepted', 'running')");
+    update.bind(1, why);
+    update.bind(2, clock_());
+    update.bind(3, job);
+    update.exec();
+  });
+}
+
 bool Store::finish(std::int64_t job, JobState state, const std::string& message) {
   return db_.write([&](SQLite::Database& db) {
     Statement update(db,

@@ -55,10 +55,11 @@ class Reporter {
   void show(const Progress& progress) {
     if (terminal_)
       std::cerr << "\r" << painted(progress_bar(progress, terminal_width() - 1)) << "\033[K" << std::flush;
-    else if (const auto now = Clock::now(); progress.made_now != made_ && now - shown_ >= std::chrono::seconds(10)) {
+    else if (const auto now = Clock::now(); differs(progress) && now - shown_ >= std::chrono::seconds(10)) {
       std::cerr << progress_line(progress) << "\n";
       shown_ = now;
       made_ = progress.made_now;
+      waits_ = progress.waits;
     }
     last_ = progress;
   }
@@ -70,6 +71,7 @@ class Reporter {
   ~Reporter() { finish(); }
 
  private:
+  bool differs(const Progress& progress) const { return progress.made_now != made_ || progress.waits != waits_; }
   /// The bar in green, where colours are wanted (https://no-color.org).
   static std::string painted(const std::string& line) {
     const char* no_color = std::getenv("NO_COLOR");
@@ -80,7 +82,8 @@ class Reporter {
 
   bool terminal_ = ::isatty(STDERR_FILENO) != 0;
   std::optional<Progress> last_;
-  std::int64_t made_ = 0;
+  std::int64_t made_ = 0;  ///< as shown last, and so on
+  std::string waits_;
   Clock::time_point shown_ = Clock::now();
 };
 

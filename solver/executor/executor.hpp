@@ -48,6 +48,8 @@ class Executor {
   virtual void stop_all() = 0;
   /// Ends a run.
   virtual void kill(RunId id) = 0;
+  /// Why no run of this group is under way, one line; empty while one is, and where nobody knows.
+  virtual std::string waits(const std::string& group) const = 0;
   /// Runs go on when this process ends, and who starts a run of the same name again takes it over.
   virtual bool survives_us() const = 0;
 };

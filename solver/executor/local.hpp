@@ -19,6 +19,7 @@ class LocalExecutor final : public Executor {
   std::vector<Ended> poll() override;
   void stop_all() override;
   void kill(RunId id) override;
+  std::string waits(const std::string&) const override { return {}; }
   bool survives_us() const override { return false; }
 
  private:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <utility>
 
 namespace talus::executor {
@@ -86,6 +87,19 @@ void SlurmExecutor::kill(RunId id) {
                               [](const Entry& e) { return e.ended || e.killed || e.id == 0; });
 }
 
+std::string SlurmExecutor::waits(const std::string& group) const {
+  std::set<std::string> reasons;
+  for (const Batch& batch : batches_)
+    for (const Task& task : batch.tasks) {
+      if (task.over || task.entries.front().run.group != group) continue;
+      if (task.running_since) return {};
+      if (!task.reason.empty()) reasons.insert(task.reason);
+    }
+  std::string text;
+  for (const std::string& reason : reasons) text += (text.empty() ? "waits in Slurm's queue: " : ", ") + reason;
+  return text;
+}
+
 void SlurmExecutor::stop_all() {
   stopping_ = true;
   for (const Entry& entry : waiting_) ended_.push_back({.id = entry.id, .taken = true});
@@ -120,17 +134,20 @@ void SlurmExecutor::look() {
 
 /// Takes in the statuses that are new.
 void SlurmExecutor::collect(Batch& batch) {
-  for (const RunPlace place : batch.directory.statuses()) {
-    if (place.task >= batch.tasks.size() || place.position >= batch.tasks[place.task].entries.size()) continue;
-    Entry& entry = batch.tasks[place.task].entries[place.position];
-    if (entry.ended) continue;
-    try {
-      const RunStatus status = batch.directory.status(place);
-      if (status.end.exit_code == 0 && status.end.signal == 0) times_.ended(entry.run.group, status.seconds);
-      end(entry, {.end = status.end, .resumed = status.resumed, .timed_out = status.timed_out, .why = status.why});
-    } catch (const BatchError& e) {  // looked at again; if it stays so, the task is gone one day, and the run lost
-      if (!std::exchange(entry.told, true)) note_(e.what());
-    }
+  for (const RunPlace place : batch.directory.statuses())
+    if (place.task < batch.tasks.size() && place.position < batch.tasks[place.task].entries.size())
+      take_in(batch, place);
+}
+
+void SlurmExecutor::take_in(Batch& batch, RunPlace place) {
+  Entry& entry = batch.tasks[place.task].entries[place.position];
+  if (entry.ended) return;
+  try {
+    const RunStatus status = batch.directory.status(place);
+    if (status.end.exit_code == 0 && status.end.signal == 0) times_.ended(entry.run.group, status.seconds);
+    end(entry, {.end = status.end, .resumed = status.resumed, .timed_out = status.timed_out, .why = status.why});
+  } catch (const BatchError& e) {  // looked at again; if it stays so, the task is gone one day, and the run lost
+    if (!std::exchange(entry.told, true)) note_(e.what());
   }
 }
 
@@ -160,6 +177,7 @@ void SlurmExecutor::judge(Batch& batch) {
         batch.job ? queue_->task(*batch.job, static_cast<std::int64_t>(i)) : std::nullopt;
     const bool alive = queued && queued->alive;
     task.missed = alive ? 0 : task.missed + 1;
+    task.reason = queued ? queued->reason : "";
     if (!queued || !queued->running) {
       task.running_since.reset();
     } else {
@@ -167,7 +185,11 @@ void SlurmExecutor::judge(Batch& batch) {
       const std::chrono::duration<double> runs = queue_begun_ - *task.running_since;
       times_.still_runs(task.entries.front().run.group, runs.count() / static_cast<double>(task.entries.size()));
     }
-    if (task.missed >= misses) lose(batch, i, queued ? queued->state : batch.job ? "forgotten" : never_submitted);
+    if (task.missed < misses) continue;
+    // NFS may list a file half a minute late, but opens it by name at once.
+    for (std::size_t k = 0; k < task.entries.size(); ++k)
+      if (batch.directory.has_status({i, k})) take_in(batch, {i, k});
+    lose(batch, i, queued ? queued->state : batch.job ? "forgotten" : never_submitted);
   }
 }
 

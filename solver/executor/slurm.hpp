@@ -37,6 +37,7 @@ class SlurmExecutor final : public Executor {
   std::vector<Ended> poll() override;
   void stop_all() override;
   void kill(RunId id) override;
+  std::string waits(const std::string& group) const override;
   bool survives_us() const override { return true; }
 
  private:
@@ -52,6 +53,7 @@ class SlurmExecutor final : public Executor {
     std::vector<Entry> entries;
     int missed = 0;  ///< looks at the queue that did not find it
     std::optional<Steady::time_point> running_since = {};
+    std::string reason = {};  ///< Slurm's word for why it waits
     bool over = false;  ///< nothing more is to come from it
     bool unwanted = false;
   };
@@ -75,6 +77,7 @@ class SlurmExecutor final : public Executor {
   // slurm.cpp: who starts runs, and the round of looks
   void look();
   void collect(Batch& batch);
+  void take_in(Batch& batch, RunPlace place);
   void judge(Batch& batch);
   void lose(Batch& batch, std::size_t index, const std::string& state);
   void end(Entry& entry, Ended how);

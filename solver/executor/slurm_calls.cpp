@@ -220,7 +220,7 @@ void SlurmExecutor::ask_queue() {
   const bool waits = !batches_.empty() || refusals_ > 0;
   if (squeue_ || queue_ || !waits || Steady::now() < next_queue_) return;
   next_queue_ = Steady::now() + (away_ ? 3 * poll_ : poll_);
-  squeue_.emplace(call({"squeue", "--json"}));
+  squeue_.emplace(call({"squeue", "--json", "--states=all"}));  // newer ones leave out what has ended
 }
 
 /// Again and again until they are gone: the controller may have been away.

@@ -93,7 +93,8 @@ SlurmQueue::SlurmQueue(const std::string& json) {
     if (!job.is_object()) throw SlurmAnswerError(place + " is not an object");
     const auto array = number(job, "array_job_id", place);
     if (!array || *array == 0) continue;  // not an array, so none of ours
-    const QueuedTask task = state(job, place);
+    QueuedTask task = state(job, place);
+    if (const std::string reason = text(job, "state_reason"); reason != "None") task.reason = reason;
     names_[text(job, "name")] = *array;
     if (const auto index = number(job, "array_task_id", place))
       tasks_[{*array, *index}] = task;

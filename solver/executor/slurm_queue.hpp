@@ -20,6 +20,7 @@ struct QueuedTask {
   std::string state;  ///< Slurm's word: "PENDING", "NODE_FAIL"
   bool alive = true;  ///< it waits, runs, or will
   bool running = false;
+  std::string reason = {};  ///< why it waits, Slurm's word: "Resources", "JobHeldUser"; empty where it gives none
 };
 
 /// The whole queue at one moment.

@@ -5,7 +5,9 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <system_error>
+#include <thread>
 
 #include "math/error.hpp"
 
@@ -119,6 +121,19 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
     content.append(block, static_cast<std::size_t>(got));
     if (content.size() > max_bytes)
       throw IoError("cannot read " + path.string() + ": it is larger than " + std::to_string(max_bytes) + " bytes");
+  }
+}
+
+void remove_directory(const fs::path& path) {
+  constexpr std::chrono::seconds patience{60};
+  const auto end = std::chrono::steady_clock::now() + patience;
+  for (;;) {
+    std::error_code error;
+    fs::remove_all(path, error);
+    if (!error) return;
+    if (error != std::errc::directory_not_empty || std::chrono::steady_clock::now() > end)
+      throw_io_error("remove", path, error.value());
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
   }
 }
 

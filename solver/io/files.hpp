@@ -25,6 +25,11 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 /// @throws IoError naming the path: missing, unreadable, a directory, larger than that
 std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 
+/// Removes a directory with all in it. NFS may list what other machines put there half a minute late; until then the
+/// directory is not empty, and that is waited for.
+/// @throws IoError
+void remove_directory(const std::filesystem::path& path);
+
 /// What a directory of results is for.
 enum class OutputKind { run, study };
 

@@ -224,7 +224,7 @@ void Driver::ended(Task task, const Ended& how) {
     if (interrupts() == 0) broken_off(task, how, said);  // else: asked to stop, it did
   } else if (code == Exit::io && how.resumed) {
     note(job_name(job) + " cannot go on from its checkpoint" + said + "; starting it again");
-    fs::remove_all(paths_.work(job));
+    remove_directory(paths_.work(job));
     again(task);
   } else if (code == Exit::io && executor_->survives_us() && task.attempts < options_.attempts) {
     note(job_name(job) + " cannot read or write" + said + "; trying once more, maybe on another machine");
@@ -305,6 +305,7 @@ void Driver::report(bool now) {
   p.mean_half_width = mean_half_width(m);
   p.floor_planned = here({.floor = true}) ? plan_.study.noise_floor_replicates : 0;
   p.floor_made = std::min<std::int64_t>(p.floor_planned, std::ssize(ledger_.floor()));
+  p.waits = executor_->waits(plan_.case_hash);
   p.elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
   options_.report(p);
 }
@@ -348,7 +349,7 @@ Outcome Driver::run() {
   if (interrupts() > 0) return Outcome::interrupted;
   if (outcome == Outcome::too_many_failed) return Outcome::too_many_failed;
   executor_.reset();
-  fs::remove_all(paths_.work());
+  remove_directory(paths_.work());
   if (too_many_failed(plan_, counted(plan_, ledger_.runs()))) return Outcome::too_many_failed;
   return outcome.value_or(Outcome::finished);
 }

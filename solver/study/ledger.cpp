@@ -130,7 +130,7 @@ void Ledger::commit(Job job) {
     if (!job.floor) keep_profiles(*record);
     fs::rename(result, paths_.result(job));
     fs::remove(paths_.failure(job));
-    fs::remove_all(paths_.work(job));
+    remove_directory(paths_.work(job));
     fs::remove(paths_.log(job));
   });
   insert(records(job), std::move(*record));
@@ -161,7 +161,7 @@ void Ledger::commit_failure(Job job, const Failure& failure) {
                              {"rerun", failure.rerun}};
   write_file_atomically(paths_.failure(job), json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
   on_disk(paths_.root, [&] {
-    fs::remove_all(paths_.work(job));
+    remove_directory(paths_.work(job));
     fs::remove(paths_.log(job));
   });
   insert(records(job), {.index = job.index, .reason = failure.reason});

@@ -17,11 +17,13 @@ def suite():
 
 
 def with_a_root():
-    """In a chroot / is no mount, which buildah and systemd-nspawn want it to be: starts the program over with the same / as one."""
+    """In a chroot / is no mount, which buildah and systemd-nspawn want it to be, and there may be no control groups: starts
+    the program over with the same / as one, and with them."""
     mounts = pathlib.Path("/proc/self/mountinfo").read_text().splitlines()
     if any(line.split()[4] == "/" for line in mounts):
         return
-    script = 'mount --rbind / /mnt && exec chroot /mnt env -C "$0" "$@"'
+    script = ('mount --rbind / /mnt && { mountpoint -q /mnt/sys/fs/cgroup || mount -t cgroup2 cgroup2 /mnt/sys/fs/cgroup; }'
+              ' && exec chroot /mnt env -C "$0" TALUS_IN_CHROOT=1 "$@"')
     os.execvp("unshare", ["unshare", "--mount", "--propagation", "unchanged", "sh", "-c", script, os.getcwd(), sys.executable, "-B", *sys.argv])
 
 
@@ -42,6 +44,8 @@ class Buildah:
         self.dir.mkdir(exist_ok=True)
         self.command = ["buildah", "--root", str(self.dir / "storage"), "--runroot", str(self.dir / "run"),
                         "--storage-driver", "overlay"]
+        # Newer buildahs would raise them to a million, which root without CAP_SYS_RESOURCE cannot.
+        self.limits = ["--ulimit=nofile=1024:1024", "--ulimit=nproc=1024:1024"]
         self.base = f"localhost/talus-test-debian:{suite()}"
 
     def __call__(self, *arguments, check=True, **more):
@@ -52,7 +56,7 @@ class Buildah:
         return done
 
     def container(self, image):
-        return self("from", "--pull-never", "--isolation", "chroot", image).stdout.split()[-1]
+        return self("from", "--pull-never", "--isolation", "chroot", *self.limits, image).stdout.split()[-1]
 
     def run_command(self, container, *command, options=()):
         return [*self.command, "run", "--isolation", "chroot", *map(str, options), container, "--", *map(str, command)]

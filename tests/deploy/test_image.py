@@ -51,7 +51,7 @@ class Image(unittest.TestCase):
     def setUpClass(cls):
         cls.buildah = Buildah(BINARY)
         cls.buildah("bud", "--isolation", "chroot", "--format", "docker", "--pull-never", "--layers",
-                    "--build-arg", f"BASE={cls.buildah.base}", *documented("build"), cwd=SOURCE)
+                    *cls.buildah.limits, "--build-arg", f"BASE={cls.buildah.base}", *documented("build"), cwd=SOURCE)
         cls.image = json.loads(cls.buildah("inspect", "--type", "image", "talusd").stdout)["Docker"]["config"]
         cls.container = cls.buildah.container("talusd")
         cls.addClassCleanup(cls.buildah, "rm", cls.container)

@@ -42,13 +42,23 @@ class Package(unittest.TestCase):
         depends = fields.split("Depends: ")[1].split("\n")[0]
         for library in ("libc6", "libhdf5", "libgomp1", "libsqlite3-0", "libssl3"):
             self.assertIn(library, depends)
+        newest = subprocess.run(["dpkg-parsechangelog", "-l", SOURCE / "deploy/changelog", "-S", "Version"], check=True,
+                                capture_output=True, text=True).stdout
+        self.assertIn(f"\nVersion: {newest}", "\n" + fields)
         held = self.shell("dpkg -L talus").split()
         cases = {f"{CASES}/{f.name}" for f in (SOURCE / "solver/cases").glob("*.json")}
         self.assertLess(cases | {"/usr/bin/talus", "/usr/bin/talusd", "/usr/share/talus/schemas/openapi.json",
                                  "/usr/share/man/man1/talus.1.gz", "/usr/share/man/man8/talusd.8.gz",
+                                 "/usr/share/doc/talus/changelog.gz",
                                  "/usr/lib/systemd/system/talusd.service",
                                  "/usr/share/bash-completion/completions/talus"}, set(held))
         self.assertFalse([name for name in held if "test" in name or name.endswith((".a", ".hpp"))])
+
+    def test_linkage_cannot_be_written_over(self):
+        for program in ("talus", "talusd"):
+            said = subprocess.run(["readelf", "-dl", BINARY / "bin" / program], check=True, capture_output=True, text=True).stdout
+            self.assertRegex(said, r"\(FLAGS_1\).* NOW")
+            self.assertIn("GNU_RELRO", said)
 
     def test_documents_are_those_of_the_programs(self):
         for name in ("case", "result", "study"):

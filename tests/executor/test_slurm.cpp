@@ -26,7 +26,7 @@ class Slurm : public testing::Test {
         "sbatch",
         "[ -e refuse ] && { echo 'sbatch: error: no such partition' >&2; exit 1; }\n"
         "for last; do :; done; echo \"$last\" > batch; printf '%s\\n' \"$@\" > arguments; echo call >> calls; echo 41");
-    program("squeue", "cat queue.json || exit 1");
+    program("squeue", "[ \"$*\" = '--json --states=all' ] && cat queue.json || exit 1");
     program("scancel", "echo \"$@\" >> cancelled");
     ::setenv("PATH", (fake.path().string() + ":/usr/bin:/bin").c_str(), 1);
     config.poll_s = 0.05;
@@ -218,6 +218,26 @@ TEST_F(Slurm, AnAnswerOfSbatchThatNobodyHeard) {
   EXPECT_TRUE(ended[0].taken);
   until([&] { return !fs::exists(files.path()); });
   EXPECT_EQ(calls(), 1);
+}
+
+TEST_F(Slurm, SaysWhyNothingRuns) {
+  const auto task = [](int index, const std::string& word, const std::string& reason) {
+    return R"({"array_job_id": 41, "array_task_id": )" + std::to_string(index) + R"(, "job_state": ")" + word +
+           R"(", "state_reason": ")" + reason + "\"}";
+  };
+  start("a");
+  start("b");
+  EXPECT_EQ(executor->waits("g"), "");
+  until_submitted();
+  queue(task(0, "PENDING", "Resources") + "," + task(1, "PENDING", "JobHeldUser"));
+  until([&] { return executor->waits("g") == "waits in Slurm's queue: JobHeldUser, Resources"; });
+  EXPECT_EQ(executor->waits("h"), "");
+  queue(task(0, "RUNNING", "None") + "," + task(1, "PENDING", "JobHeldUser"));
+  until([&] { return executor->waits("g").empty(); });
+  batch().write_status({0, 0}, {.end = {}, .seconds = 1.0});
+  queue(task(1, "PENDING", "JobHeldUser"));
+  until([&] { return executor->waits("g") == "waits in Slurm's queue: JobHeldUser"; });
+  EXPECT_EQ(ended.size(), 1u);
 }
 
 TEST_F(Slurm, TakesFewRunsWhileNobodyKnowsHowLongTheyTake) {

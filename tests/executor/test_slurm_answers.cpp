@@ -65,6 +65,17 @@ TEST(SlurmQueue, ReadsLaterVersions) {
   EXPECT_TRUE(q.task(7, 999)->alive);  // the list is cut short: it may be any that has no record of its own
 }
 
+TEST(SlurmQueue, WhyATaskWaits) {
+  const SlurmQueue q(queue(R"(
+    {"array_job_id": 7, "array_task_id": null, "array_task_string": "1-3", "job_state": "PENDING",
+     "state_reason": "JobHeldUser"},
+    {"array_job_id": 7, "array_task_id": 0, "job_state": "RUNNING", "state_reason": "None"},
+    {"array_job_id": 8, "array_task_id": 0, "job_state": "PENDING"})"));
+  EXPECT_EQ(q.task(7, 2)->reason, "JobHeldUser");
+  EXPECT_EQ(q.task(7, 0)->reason, "");
+  EXPECT_EQ(q.task(8, 0)->reason, "");
+}
+
 TEST(SlurmQueue, AStateThatNobodyKnowsIsNotAnEnd) {
   EXPECT_TRUE(
       SlurmQueue(queue(R"({"array_job_id": 7, "array_task_id": 0, "job_state": "TELEPORTING"})")).task(7, 0)->alive);

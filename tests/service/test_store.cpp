@@ -188,6 +188,17 @@ TEST_F(StoreTest, AJobEndsOnlyWhenNothingOfItIsLeft) {
   EXPECT_FALSE(store->finish(made.number, JobState::failed, "again"));
 }
 
+TEST_F(StoreTest, AnOpenJobSaysWhyItWaits) {
+  const Job made = add("one", 1);
+  store->note_waits(made.number, "waits for rain");
+  EXPECT_EQ(job("one").message, "waits for rain");
+  EXPECT_GT(job("one").version, made.version);
+  store->accept(*store->claim(lease), result(1));
+  store->finish(made.number, JobState::successful, "done");
+  store->note_waits(made.number, "waits for rain");
+  EXPECT_EQ(job("one").message, "done");
+}
+
 TEST_F(StoreTest, DismissingTakesTheRunsAway) {
   const Job made = add("one", 3);
   const Claim claim = *store->claim(lease);

@@ -14,7 +14,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "service"))
 from cluster import Cluster  # noqa: E402
-from daemon import TALUS, Daemon, case, digests, main  # noqa: E402
+from daemon import TALUS, TALUSD, Daemon, case, digests, main  # noqa: E402
 
 REALIZATIONS, SEED = 14, 5
 CASE = case(spacing=0.3, end=4.0)  # some two seconds a run
@@ -68,14 +68,23 @@ class SlurmTest(unittest.TestCase):
     def running(self):
         return self.squeue("-tR", "-o%A")
 
+    def releases_until(self, over):
+        """Every array comes held."""
+        def all_released():
+            for job in set(self.squeue("-tPD", "-o%F")):
+                self.cluster.run("scontrol", "release", job, check=False)  # it may just have begun
+            return over()
+
+        self.cluster.wait("the end of all", all_released, 150)
+
 
 class StudyTest(SlurmTest):
-    def start(self):
+    def start(self, **environment):
         self.log = open(self.dir / "log", "ab")
         self.addCleanup(self.log.close)
         self.process = subprocess.Popen(
             [*self.study(self.dir / "study"), "--executor", "slurm", "--slurm", self.dir / "slurm.json"],
-            env=self.cluster.environment, stdout=subprocess.DEVNULL, stderr=self.log)
+            env={**self.cluster.environment, **environment}, stdout=subprocess.DEVNULL, stderr=self.log)
         self.addCleanup(self.process.kill)
 
     def said(self):
@@ -188,6 +197,20 @@ class Studies(StudyTest):
         self.finishes()
         self.same_as_local()
 
+    def test_held(self):
+        self.configure(sbatch_options=["--hold"])
+        self.start()
+        self.cluster.wait("the study to say so", lambda: "0 failed, 8 running, waits in Slurm's queue: JobHeldUser" in self.said())
+        self.releases_until(lambda: self.process.poll() is not None)
+        self.finishes()
+        self.same_as_local()
+
+    def test_a_directory_that_is_listed_late(self):
+        """As on NFS: what is not listed yet may well be there."""
+        self.start(LD_PRELOAD=str(pathlib.Path(TALUSD).parent.parent / "tests/late_listing.so"))
+        self.finishes()
+        self.same_as_local()
+
     def test_refused_by_slurm(self):
         self.configure(partition="nowhere")
         self.start()
@@ -212,7 +235,7 @@ class Forgotten(StudyTest):
         self.process.kill()
         self.process.wait()
         self.cluster.run("scancel", "--partition=batch")
-        self.cluster.wait("Slurm to forget", lambda: json.loads(self.cluster.run("squeue", "--json"))["jobs"] == [], 120)
+        self.cluster.wait("Slurm to forget", lambda: json.loads(self.cluster.run("squeue", "--json", "--states=all"))["jobs"] == [], 120)
         self.start()
         self.finishes()
         self.same_as_local()
@@ -302,6 +325,19 @@ class Service(SlurmTest):
         self.assertTrue(self.running())
         self.start()
         self.finishes(job)
+        self.same_as_local(job)
+
+    def test_a_held_job_says_so(self):
+        self.configure(sbatch_options=["--hold"])
+        self.start()
+        job = self.submit()
+        self.cluster.wait("the job to say so", lambda: "waits" in self.daemon.get(f"/jobs/{job}").json)
+        info = self.daemon.get(f"/jobs/{job}").json
+        self.assertEqual(info["waits"], "waits in Slurm's queue: JobHeldUser")
+        self.assertEqual(info["message"], f"0 of {REALIZATIONS} realizations done; {info['waits']}")
+        self.releases_until(lambda: self.daemon.get(f"/jobs/{job}").json["status"] in OVER)
+        info = self.finishes(job)
+        self.assertNotIn("waits", info)
         self.same_as_local(job)
 
     def test_a_dismissed_job_is_cancelled(self):

@@ -2,7 +2,6 @@
 // Ways to make input and output go wrong.
 
 #include <gtest/gtest.h>
-#include <sched.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -52,12 +51,26 @@ class FileSizeLimit {
   void (*old_action_)(int);
 };
 
-/// Puts a small disk on `directory`, which nobody else sees and which goes with the process. @return false without the
-/// right to
-inline bool mount_small_disk(const std::filesystem::path& directory, const std::string& size) {
-  if (::unshare(CLONE_NEWNS) != 0 || ::mount(nullptr, "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0) return false;
-  return ::mount("tmpfs", directory.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
-}
+/// A disk that only this process sees, in a chroot too: it is mounted nowhere.
+class SmallDisk {
+ public:
+  explicit SmallDisk(const char* size) {
+    const int kind = ::fsopen("tmpfs", FSOPEN_CLOEXEC);
+    ::fsconfig(kind, FSCONFIG_SET_STRING, "size", size, 0);
+    ::fsconfig(kind, FSCONFIG_CMD_CREATE, nullptr, nullptr, 0);
+    disk_ = ::fsmount(kind, FSMOUNT_CLOEXEC, 0);
+    ::close(kind);
+  }
+  ~SmallDisk() { ::close(disk_); }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  /// Whether there was the right to make one.
+  bool exists() const { return disk_ >= 0; }
+  std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(disk_); }
+
+ private:
+  int disk_ = -1;
+};
 
 /// Runs `action` in a process of its own and kills it with -9 after `time`.
 inline void run_and_kill(std::chrono::milliseconds time, const std::function<void()>& action) {

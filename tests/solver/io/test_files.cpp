@@ -69,14 +69,14 @@ TEST(WriteFileAtomically, LeavesTheOldFileWhenTheNewOneDoesNotFit) {
 }
 
 TEST(WriteFileAtomically, LeavesTheOldFileWhenTheDiskIsFull) {
-  const TemporaryDirectory dir;
-  if (!test::mount_small_disk(dir.path(), "1m")) GTEST_SKIP() << "no right to mount a disk";
-  const auto file = dir / "a";
+  const test::SmallDisk disk("1m");
+  if (!disk.exists()) GTEST_SKIP() << "no right to make a disk";
+  const auto file = disk.path() / "a";
   write_file_atomically(file, "old");
   const std::string message = io_error([&] { write_file_atomically(file, std::string(2 * megabyte, 'x')); });
   EXPECT_NE(message.find("No space left on device; free some space"), std::string::npos) << message;
   EXPECT_EQ(read_file(file, 100), "old");
-  EXPECT_EQ(test::names_in(dir.path()), Names{"a"});
+  EXPECT_EQ(test::names_in(disk.path()), Names{"a"});
 }
 
 TEST(WriteFileAtomically, RefusesWhatIsNotARegularFile) {

@@ -229,9 +229,9 @@ void fill_up(const fs::path& path, const std::string& reason) {
 }
 
 TEST(Snapshots, SurviveAFullDisk) {
-  const TemporaryDirectory dir;
-  if (!test::mount_small_disk(dir.path(), "4m")) GTEST_SKIP() << "no right to mount a disk";
-  fill_up(dir / "s.vtkhdf", "No space left on device; free some space");
+  const test::SmallDisk disk("4m");
+  if (!disk.exists()) GTEST_SKIP() << "no right to make a disk";
+  fill_up(disk.path() / "s.vtkhdf", "No space left on device; free some space");
 }
 
 TEST(Snapshots, SurviveALimitOfFileSize) {
