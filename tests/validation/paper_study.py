@@ -1,12 +1,13 @@
 """The study of Zhang et al. 2020, Table 4: cases 1-9, each with three truncations of the random field.
 
-`python3 paper_study.py WORK [N ...]` runs all of them to N realizations each, in as many passes as there are Ns; stopped at any moment,
-the same command goes on.
+`python3 paper_study.py WORK [N ...]` brings all of them to N realizations each, in as many passes as there are Ns; stopped at any moment,
+the same command goes on. What is done is kept in books/, a directory of tables for each study, which any machine can go on from.
 """
 
 import csv
 import json
 import pathlib
+import shutil
 import sys
 
 import numpy as np
@@ -42,30 +43,72 @@ def name(case, truncation):
     return f"case{case}-{truncation}"
 
 
-def directory(work, case, truncation, spacing=SPACING):
-    return pathlib.Path(work) / "paper_study" / f"dx{spacing:g}" / name(case, truncation)
+BOOKS = pathlib.Path(__file__).resolve().parent / "books"
+TABLES = ("plan.json", "case.resolved.json", "noise_floor.csv", "realizations.csv")  # what `talus stats` reads; the last one counts what is done
 
 
-def advance(work, realizations, spacing=SPACING):
+def read_rows(book):
+    """Rows of its realizations.csv; none where there is no book yet."""
+    if not (book / "realizations.csv").exists():
+        return []
+    with open(book / "realizations.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def advance(work, realizations, spacing=SPACING, books=BOOKS):
     """Every study to at least so many realizations. Realization i has the same draws in all cases."""
     for truncation in TRUNCATIONS:
         for case in TABLE_4:
-            talus_runs.study(talus_runs.CASES / "illustrative.json", directory(work, case, truncation, spacing), realizations,
-                             settings(case, truncation, spacing))
+            extend(pathlib.Path(work) / "paper_study" / f"dx{spacing:g}", books / name(case, truncation), realizations, settings(case, truncation, spacing))
             print(name(case, truncation), realizations, flush=True)
 
 
+def extend(work, book, realizations, chosen):
+    """Runs what the book lacks, and enters it."""
+    rows = read_rows(book)
+    if len(rows) >= realizations:
+        return
+    if rows:
+        check_program(work, rows[0], chosen)
+    part, joined = work / f"{book.name}-from-{len(rows)}", work / f"{book.name}-joined"
+    talus_runs.study(talus_runs.CASES / "illustrative.json", part, realizations, chosen, first=len(rows))
+    shutil.rmtree(joined, ignore_errors=True)
+    talus_runs.call(["stats", *([book] if rows else []), part, "--out", joined])
+    enter(joined, book)
+    shutil.rmtree(part), shutil.rmtree(joined)
+
+
+def enter(study, book):
+    """Copies a study's tables; killed in between, it can be done again."""
+    book.mkdir(parents=True, exist_ok=True)
+    for table_name in TABLES:
+        shutil.copy(study / table_name, book / (table_name + ".new"))
+        (book / (table_name + ".new")).rename(book / table_name)
+
+
+def check_program(work, row, chosen):
+    """Runs one realization of the book again: a program that gives other bits must not go on with it."""
+    where = work / "again"
+    shutil.rmtree(where, ignore_errors=True)
+    found = talus_runs.run(talus_runs.CASES / "illustrative.json", where, chosen, threads=1, extra=["--realization", row["index"], "--seed", 1])["digest"]
+    if found != row["digest"]:
+        raise SystemExit(f"realization {row['index']} has the digest {found} now, {row['digest']} in the books: start new ones")
+
+
 def measure(work, coarse):
-    """Reads what `advance` has made; a coarse one is made here."""
-    spacing = 0.8 if coarse else SPACING
+    """Reads what `advance` has entered in the books; coarse ones are made here."""
+    spacing, books = (0.8, pathlib.Path(work) / "books") if coarse else (SPACING, BOOKS)
     if coarse:
-        advance(work, 20, spacing)
+        advance(work, 20, spacing, books)
     studies = []
     for truncation in TRUNCATIONS:
         for case in TABLE_4:
-            where = directory(work, case, truncation, spacing)
-            if (where / "study.json").exists():
-                studies.append(summary(case, truncation, where))
+            book = books / name(case, truncation)
+            if book.exists():
+                counted = pathlib.Path(work) / "paper_study" / f"{book.name}-counted"
+                shutil.rmtree(counted, ignore_errors=True)
+                talus_runs.call(["stats", book, "--out", counted])
+                studies.append(summary(case, truncation, counted))
     return {"spacing_m": spacing, "studies": studies}
 
 
@@ -75,8 +118,7 @@ def summary(case, truncation, where):
     for key in ("influence_zone_m", "front_connected_m", "front_mass_99_m", "centre_of_mass_x_m"):
         quantity = study["quantities"][key]
         found[key] = {name: quantity[name] for name in ("mean", "mean_ci95", "stdev", "stdev_ci95", "noise_floor_stdev")}
-    with open(where / "realizations.csv", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["status"] == "done"]
+    rows = [row for row in read_rows(where) if row["status"] == "done"]
     found["n"] = len(rows)
     found["fronts"] = [round(float(row["influence_zone_m"]), 3) for row in rows]
     phi = np.array([float(row["mean_friction_angle_deg"]) for row in rows])

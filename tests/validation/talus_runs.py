@@ -48,11 +48,11 @@ def run(case, directory, settings=None, threads=None, extra=()):
     return json.loads(call(arguments))
 
 
-def study(case, directory, realizations, settings=None, workers=os.cpu_count(), seed=1):
-    """study.json of a study of at least so many realizations; those that are there already are kept."""
+def study(case, directory, realizations, settings=None, workers=os.cpu_count(), seed=1, first=0):
+    """study.json of a study of at least so many realizations, from number `first` on; those that are there already are kept."""
     directory = pathlib.Path(directory)
     call(["study", case_file(case, directory), "--out", directory, "--realizations", realizations, "--seed", seed, "--workers", workers,
-          "--threads", 1, "--no-figures", *override(settings or {})])
+          "--threads", 1, "--no-figures", *(["--range", first, realizations - 1] if first else []), *override(settings or {})])
     return json.loads((directory / "study.json").read_text())
 
 
