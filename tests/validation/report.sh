@@ -12,6 +12,6 @@ export TALUS=${TALUS:-$PWD/build/release/bin/talus}
 python=build/release/python/bin/python
 case " $* " in
   *" --coarse "* | *" --only "* | *" --from-numbers "*) ;;
-  *) "$python" tests/validation/paper_study.py "$work" 100 ;;
+  *) "$python" tests/validation/paper_study.py "$work" ;;
 esac
 exec "$python" tests/validation/report.py "$work" "$@"

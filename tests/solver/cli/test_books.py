@@ -124,6 +124,13 @@ class Books(Directory):
         self.stats("--from-runs", "--quantity", "influence_zone", code=2)
         self.assertEqual(sorted(self.out.rglob("*")), before)
 
+    def test_a_study_without_its_case_is_merged_into_nothing(self):
+        self.make_all(1)
+        self.stats("--from-runs")
+        (self.out / "case.resolved.json").unlink()
+        self.stats("--out", self.dir / "merged", code=5)
+        self.assertFalse((self.dir / "merged").exists())
+
     def test_bins_are_equal_and_edges_are_those_given(self):
         self.make_all(4)
         sample = sorted(load(self.out / f"runs/{i:06}.json")["influence_zone_m"] for i in range(4))
