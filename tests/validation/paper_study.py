@@ -68,6 +68,8 @@ def extend(work, book, realizations, chosen):
     rows = read_rows(book)
     if len(rows) >= realizations:
         return
+    if [int(row["index"]) for row in rows] != list(range(len(rows))):
+        raise SystemExit(f"{book} has gaps")
     if rows:
         check_program(work, rows[0], chosen)
     part, joined = work / f"{book.name}-from-{len(rows)}", work / f"{book.name}-joined"
