@@ -13,7 +13,7 @@ TITLE = "Landslide like Yangbaodi"
 SOURCE = "[Z20] section 3.2: run-out 140 m beyond the toe, phi = 28 deg. The profile is synthetic (the paper's is a figure), so this is no independent check"
 REMARKS = ("The terrain beyond the toe was shaped so that the slide runs 140 m at 28 deg with the default numerics: the first two rows say that it still does, not that it "
            "must. What the profile did not decide is the energy line. Friction at the bed takes tan(phi) of the centre of mass's fall for each metre of its travel; what is "
-           "sheared inside the slide, and what the bends of the bed add to the slide's weight, takes some more.")
+           "sheared inside the slide, and what the bends of the bed add to the slide's weight, takes some more. (Less than 1 cannot be; the upper bound was set after a first look at 1.07 to 1.15.)")
 TOE, RUNOUT = 102.0, 140.0
 
 
