@@ -139,7 +139,7 @@ Head judge(std::string_view head, const GuardLimits& limits) {
   if (auto bad = split(head.substr(first + 2, head.size() - first - 4), limits, lines)) return *bad;
 
   Head good{.method = std::string(method), .keep_alive = protocol == "HTTP/1.1"};
-  good.rewritten = good.method + " " + wanted->path + " HTTP/1.1\r\n";
+  good.rewritten = good.method + " " + wanted->path + " " + std::string(protocol) + "\r\n";
   const auto count = [&](std::string_view name) {
     return std::count_if(lines.begin(), lines.end(), [&](const Line& line) { return line.name == name; });
   };

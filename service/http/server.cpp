@@ -77,7 +77,21 @@ Incoming incoming(const httplib::Request& request) {
   return in;
 }
 
-void fill(httplib::Response& response, Answer answer) {
+/// An HTTP/1.0 client (`chunked` is false) knows no chunks: its stream ends with the connection.
+void fill_stream(httplib::Response& response, const Answer& answer, bool chunked) {
+  const auto pour = [stream = answer.stream](httplib::DataSink& sink) {
+    stream([&sink](const std::string& piece) { return sink.write(piece.data(), piece.size()); });
+    sink.done();
+  };
+  if (chunked) {
+    response.set_chunked_content_provider(answer.type, [pour](size_t, httplib::DataSink& sink) { return pour(sink), true; });
+    return;
+  }
+  response.set_header("Connection", "close");
+  response.set_content_provider(answer.type, [pour](size_t, httplib::DataSink& sink) { return pour(sink), true; });
+}
+
+void fill(httplib::Response& response, Answer answer, bool chunked = true) {
   response.status = answer.status;
   response.set_header("Date", http_date(system_now()));
   response.set_header("X-Content-Type-Options", "nosniff");
@@ -85,11 +99,7 @@ void fill(httplib::Response& response, Answer answer) {
   for (const auto& [name, value] : answer.headers) response.set_header(name, value);
   if (answer.type == event_stream) response.set_header("Cache-Control", "no-store");
   if (answer.stream) {
-    response.set_chunked_content_provider(answer.type, [stream = answer.stream](size_t, httplib::DataSink& sink) {
-      stream([&sink](const std::string& piece) { return sink.write(piece.data(), piece.size()); });
-      sink.done();
-      return true;
-    });
+    fill_stream(response, answer, chunked);
   } else if (answer.status != 204 && answer.status != 304) {
     response.set_content(answer.body, answer.type);
   }
@@ -122,7 +132,7 @@ class Server::Implementation : public httplib::Server {
       listening_ = fd;
     });
     const auto answer = [this](const httplib::Request& request, httplib::Response& response) {
-      fill(response, handle_(incoming(request)));
+      fill(response, handle_(incoming(request)), request.version != "HTTP/1.0");
     };
     const std::string any = R"([\s\S]*)";
     Get(any, answer), Post(any, answer), Put(any, answer), Patch(any, answer), Delete(any, answer),

@@ -76,10 +76,15 @@ struct StateV {
 /// Packs states as they are.
 struct Packer {
   double per_quantum;
-  Wide gx, gy;
+  Wide gx, gy, mass;
+  bool one_mass;
 
   Packer(const PackedFlow& f, const FlowConstants& k)
-      : per_quantum(1.0 / f.fixed.quantum), gx(each(k.g.x / (k.c_s * k.c_s))), gy(each(k.g.y / (k.c_s * k.c_s))) {}
+      : per_quantum(1.0 / f.fixed.quantum),
+        gx(each(k.g.x / (k.c_s * k.c_s))),
+        gy(each(k.g.y / (k.c_s * k.c_s))),
+        mass(each(f.mass.value_or(0.0))),
+        one_mass(f.mass) {}
 
   HWY_INLINE void pack(PackedFlow& f, const FlowConstants& k, const Soil& soil, const StateV& s, std::size_t i, std::size_t count) const {
     const D d;
@@ -93,7 +98,8 @@ struct Packer {
     const Wide hydrostatic = gx * (s.x - each(f.fixed.lo.x)) + gy * (s.y - each(f.fixed.lo.y));
     store_groups(fixed_point(s.x, f.fixed.lo.x, per_quantum), fixed_point(s.y, f.fixed.lo.y, per_quantum), narrow(s.vx), narrow(s.vy),
                  f.soil.motion.data() + 4 * i, count);
-    store_groups(narrow(load(soil.m.data() + i, count) / s.rho), narrow(q - hydrostatic), narrow(s.rho), hn::Load(d, material),
+    const Wide m = one_mass ? mass : load(soil.m.data() + i, count);
+    store_groups(narrow(m / s.rho), narrow(q - hydrostatic), narrow(s.rho), hn::Load(d, material),
                  f.soil.density.data() + 4 * i, count);
     store(narrow(q), f.soil.q.data() + i, count);
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -18,9 +19,10 @@ namespace talus {
 /// What the vectorised loops read and write.
 struct PackedFlow {
   FixedPoint fixed;
+  std::optional<double> mass;  ///< of every soil particle, where all have the same [kg/m]
   PackedSoil soil;
   PackedWalls walls;
-  std::vector<std::uint32_t> soil_clusters, wall_clusters;  ///< first place of each
+  std::vector<std::uint32_t> soil_clusters = {0}, wall_clusters = {0};  ///< first place of each, and one more
   ClusterList soil_soil, soil_wall, wall_soil;              ///< target_source
 };
 

@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <functional>
+#include <numeric>
+#include <optional>
 
 namespace talus {
 
 namespace {
-
-constexpr std::size_t chunk_size = 256;  ///< particles that a thread takes at a time
-
-std::size_t chunks_of(std::size_t n) { return (n + chunk_size - 1) / chunk_size; }
-Chunk chunk(std::size_t c, std::size_t n) { return {c * chunk_size, std::min((c + 1) * chunk_size, n)}; }
 
 /// Calls f(array of Soil, array of packed floats, stride, offset) for all that evaluations write.
 template <class S, class P, class F>
@@ -22,6 +20,12 @@ void for_each_pair(S& soil, P& packed, F&& f) {
   f(soil.dtxx, packed.dtxx, 1, 0), f(soil.dtyy, packed.dtyy, 1, 0), f(soil.dtxy, packed.dtxy, 1, 0);
   f(soil.gamma_dot, packed.gamma_dot, 1, 0);
   f(soil.sxx, packed.stress, 4, 0), f(soil.syy, packed.stress, 4, 1), f(soil.sxy, packed.stress, 4, 2), f(soil.p, packed.stress, 4, 3);
+}
+
+/// The one value of all, if they have one: reading it from memory once is faster.
+std::optional<double> common(std::span<const double> values) {
+  const bool same = std::ranges::adjacent_find(values, std::not_equal_to()) == values.end();
+  return same && !values.empty() ? std::optional(values.front()) : std::nullopt;
 }
 
 }  // namespace
@@ -68,12 +72,16 @@ void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const C
   const auto lists = [](const std::vector<std::uint32_t>& first) {
     return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size;
   };
+  flow_.mass = common(soil.m);
   flow_.fixed = FixedPoint::covering(soil_cells.box(), k_.h);
   flow_.soil_clusters = clusters(soil_cells, lanes), flow_.wall_clusters = clusters(wall_cells, lanes);
   flow_.walls.resize(walls.size());
   flow_.soil_soil.chunks.resize(lists(flow_.soil_clusters)), flow_.soil_wall.chunks.resize(lists(flow_.soil_clusters));
   flow_.wall_soil.chunks.resize(lists(flow_.wall_clusters));
   pack_walls(flow_, walls);
+  work_.resize(flow_.soil_soil.chunks.size() + 1);
+  std::iota(work_.begin(), work_.end(), std::size_t{0});  // not known before the lists are
+  share_out();
   packed_now_ = true;
   const auto n_soil = static_cast<std::uint32_t>(soil.size()), n_wall = static_cast<std::uint32_t>(walls.size());
   const PackedSoil& s = flow_.soil;
@@ -82,7 +90,7 @@ void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const C
   {
     pack_active(soil, 0.0);
     // Sources may have moved since the cells were built; from now on targets and sources both may move by `way`.
-#pragma omp for schedule(dynamic) nowait
+#pragma omp for schedule(static) nowait
     for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) {
       list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, soil_cells, s.motion, reach + way, moved, n_soil, c, flow_.soil_soil);
       list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, wall_cells, w.place, reach, 0.0, n_wall, c, flow_.soil_wall);
@@ -125,11 +133,22 @@ void VectorisedFlow::for_chunks(std::size_t Share::* next, std::size_t Share::* 
   }
 }
 
+/// Calls f(particles) for those of the calling thread's share, which are in its caches: loops that move memory rather than
+/// compute would lose by taking what others have left. Inside a parallel region, which must wait for the other threads afterwards.
+template <class F>
+void VectorisedFlow::for_own(std::size_t active, F&& f) {
+  const auto thread = static_cast<std::size_t>(omp_get_thread_num()), threads = static_cast<std::size_t>(omp_get_num_threads());
+  const auto place = [&](std::size_t chunk) {
+    const std::size_t cluster = std::min(chunk * ClusterList::chunk_size, flow_.soil_clusters.size() - 1);
+    return std::min<std::size_t>(flow_.soil_clusters[cluster], active);
+  };
+  for (std::size_t t = thread; t < shares_.size(); t += threads) f(Chunk{place(shares_[t].begin), place(shares_[t].end)});
+}
+
 /// Inside a parallel region.
 void VectorisedFlow::pack_active(const Soil& soil, double ahead) {
-  const std::size_t n = soil.n_active;
-#pragma omp for schedule(static)
-  for (std::size_t c = 0; c < chunks_of(n); ++c) pack_soil(flow_, k_, soil, ahead, chunk(c, n));
+  for_own(soil.n_active, [&](Chunk own) { pack_soil(flow_, k_, soil, ahead, own); });
+#pragma omp barrier
 }
 
 /// Inside a parallel region.
@@ -141,7 +160,7 @@ void VectorisedFlow::evaluate_here(Soil& soil, WallParticles& walls, double ahea
 #pragma omp barrier
 #pragma omp master
   watch.lap(times_.gradient);
-#pragma omp for schedule(dynamic)  // most are far from the soil and cost nothing
+#pragma omp for schedule(static)
   for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, k_, walls, c);
 #pragma omp master
   watch.lap(times_.walls);
@@ -163,15 +182,13 @@ void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bo
 Motion VectorisedFlow::step(Soil& soil, WallParticles& walls, double dt, bool rk2) {
   Stopwatch watch;
   share_out();
-  const std::size_t n = soil.n_active;
   Motion motion;
 #pragma omp declare reduction(extremes : Motion : omp_out = omp_out.with(omp_in))
 #pragma omp parallel reduction(extremes : motion)
   {
     if (rk2) evaluate_here(soil, walls, 0.0, true, !packed_now_, watch);
     evaluate_here(soil, walls, 0.5 * dt, !rk2, true, watch);
-#pragma omp for schedule(static) nowait
-    for (std::size_t c = 0; c < chunks_of(n); ++c) motion = motion.with(move_soil(flow_, k_, soil, dt, rk2, chunk(c, n)));
+    for_own(soil.n_active, [&](Chunk own) { motion = motion.with(move_soil(flow_, k_, soil, dt, rk2, own)); });
   }
   watch.lap(times_.update);
   packed_now_ = true;

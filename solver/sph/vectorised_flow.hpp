@@ -55,6 +55,8 @@ class VectorisedFlow {
   void share_out();
   template <class F>
   void for_chunks(std::size_t Share::* next, std::size_t Share::* other, F&& f);
+  template <class F>
+  void for_own(std::size_t active, F&& f);
   void evaluate_here(Soil& soil, WallParticles& walls, double ahead, bool keep, bool pack, Stopwatch& watch);
 
   FlowConstants k_;

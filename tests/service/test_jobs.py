@@ -185,6 +185,14 @@ class Ours(ServiceTest):
         info = self.daemon.get(f"/jobs/{job}/events?wait=5&since=0").json
         self.assertEqual(info["status"], "successful")
 
+    def test_events_for_a_client_that_knows_no_chunks(self):
+        job = self.daemon.submit(study(2, noise_floor_replicates=0))
+        head, _, body = self.daemon.raw(f"GET /jobs/{job}/events HTTP/1.0\r\n\r\n".encode(), 60).partition(b"\r\n\r\n")
+        self.assertNotIn(b"chunked", head.lower())
+        self.assertRegex(head, rb"(?i)Connection: close")
+        self.assertRegex(body, rb"\A(id: |: still here)")
+        self.assertRegex(body, rb'"status":"successful".*\n\n\Z')
+
     def test_long_poll_ends_with_the_change(self):
         reply = self.daemon.post(
             "/processes/echo/execution", {"inputs": {"s": "a", "pause": 1.0}}, headers={"Prefer": "respond-async"}
