@@ -21,6 +21,14 @@ constexpr milliseconds trouble_interval{1000};
 constexpr milliseconds interim_interval{2000};
 constexpr std::uint64_t crowded_bytes = std::uint64_t{8} << 20;  ///< a run that cannot write then is not to blame
 
+/// Could it be? What a network file system does not let go yet is tried again, and nothing else waits for it.
+bool removed(const fs::path& directory) {
+  std::error_code error;
+  fs::remove_all(directory, error);
+  if (error) log_info("not_removed_yet", {{"directory", directory.string()}, {"why", error.message()}});
+  return !error;
+}
+
 std::unique_ptr<executor::Executor> make_executor(const Config& config) {
   if (!config.slurm) return std::make_unique<executor::LocalExecutor>(config.workers);
   const auto note = [](const std::string& text) { log_info("slurm", {{"said", text}}); };
@@ -218,8 +226,12 @@ std::set<std::string> Scheduler::jobs_at_work() const {
 
 /// Jobs that the executor cannot go on with say why.
 void Scheduler::note_waits() {
-  for (const std::string& id : jobs_at_work()) {
-    const std::string why = executor_->waits(id);
+  const std::set<std::string> at_work = jobs_at_work();
+  std::set<std::string> concerned = at_work;
+  concerned.merge(std::exchange(waiting_, {}));  // those that said so and have nothing at work any more
+  for (const std::string& id : concerned) {
+    const std::string why = at_work.contains(id) ? executor_->waits(id) : "";
+    if (!why.empty()) waiting_.insert(id);
     const std::optional<Job> job = store_.job(id);
     if (!job || ended(job->state) || job->message == why) continue;
     store_.note_waits(job->number, why);
@@ -272,8 +284,8 @@ void Scheduler::remove_dismissed() {
                                        [&](const Publisher& p) { return p.study.root == entry.path(); });
     if (works || publishes)
       removing_ = 1;
-    else if (store_.job(id))
-      fs::remove_all(entry.path());
+    else if (store_.job(id) && !removed(entry.path()))
+      removing_ = 1;
   }
 }
 
@@ -281,8 +293,8 @@ void Scheduler::remove_dismissed() {
 void Scheduler::remove_orphans() {
   const std::set<std::string> known = store_.all_ids();
   for (const auto& entry : fs::directory_iterator(data_.jobs()))
-    if (!known.contains(entry.path().filename().string())) fs::remove_all(entry.path());
-  fs::remove_all(data_.scratch());
+    if (!known.contains(entry.path().filename().string())) removed(entry.path());
+  removed(data_.scratch());
   fs::create_directories(data_.scratch());
 }
 

@@ -98,6 +98,7 @@ class Scheduler {
   std::map<executor::RunId, Worker> workers_;
   std::list<Publisher> publishers_;
   std::map<std::int64_t, int> publish_failures_;              ///< by job
+  std::set<std::string> waiting_;                             ///< jobs that say what they wait for
   std::map<std::int64_t, std::int64_t> interim_published_;    ///< by job: how many were done then
   Steady::time_point next_beat_{}, next_interim_{}, retry_at_{};
   bool look_ = true;          ///< the queue may hold something to do

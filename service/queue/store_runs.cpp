@@ -170,6 +170,7 @@ std::vector<Claim> Store::requeue_all() {
                       query.getColumn(3).getString(), query.getColumn(4).getInt64(), query.getColumn(5).getInt64(),
                       query.getColumn(6).getInt64()});
     db.exec("UPDATE runs SET state = 'queued' WHERE state = 'leased'");
+    db.exec("UPDATE jobs SET message = '' WHERE state IN ('accepted', 'running')");  // what they waited for then
     return held;
   });
 }

@@ -87,7 +87,7 @@ void publish(const StatsOptions& options, const Tables& tables, const std::strin
   if (!options.out.empty())
     write_merged(options.out, tables, options.directories.front());
   else if (options.from_runs)
-    write_tables(paths, tables.plan, tables.runs, tables.floor);
+    Ledger(paths, tables.plan).make_directories(), write_tables(paths, tables.plan, tables.runs, tables.floor);  // of a study that can go on
   else
     write_file_atomically(paths.summary(), study);
 }

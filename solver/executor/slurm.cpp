@@ -177,7 +177,7 @@ void SlurmExecutor::judge(Batch& batch) {
         batch.job ? queue_->task(*batch.job, static_cast<std::int64_t>(i)) : std::nullopt;
     const bool alive = queued && queued->alive;
     task.missed = alive ? 0 : task.missed + 1;
-    task.reason = queued ? queued->reason : "";
+    task.reason = alive && queued->state == "PENDING" ? queued->reason : "";  // that of an ended one is why it ended
     if (!queued || !queued->running) {
       task.running_since.reset();
     } else {

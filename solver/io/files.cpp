@@ -124,6 +124,15 @@ std::string read_file(const fs::path& path, std::size_t max_bytes) {
   }
 }
 
+namespace {
+
+/// A network file system lists what is gone, and keeps what another process has open, under another name.
+bool may_pass(const std::error_code& error) {
+  return error == std::errc::directory_not_empty || error == std::errc::device_or_resource_busy;
+}
+
+}  // namespace
+
 void remove_directory(const fs::path& path) {
   constexpr std::chrono::seconds patience{60};
   const auto end = std::chrono::steady_clock::now() + patience;
@@ -131,10 +140,16 @@ void remove_directory(const fs::path& path) {
     std::error_code error;
     fs::remove_all(path, error);
     if (!error) return;
-    if (error != std::errc::directory_not_empty || std::chrono::steady_clock::now() > end)
+    if (!may_pass(error) || std::chrono::steady_clock::now() > end)
       throw_io_error("remove", path, error.value());
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
   }
+}
+
+void remove_what_goes(const fs::path& path) {
+  std::error_code error;
+  fs::remove_all(path, error);
+  if (error && !may_pass(error)) throw_io_error("remove", path, error.value());
 }
 
 }  // namespace talus

@@ -29,6 +29,8 @@ std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 /// directory is not empty, and that is waited for.
 /// @throws IoError
 void remove_directory(const std::filesystem::path& path);
+/// The same at once; what a network file system does not let go yet stays, for who removes the directory around it.
+void remove_what_goes(const std::filesystem::path& path);
 
 /// What a directory of results is for.
 enum class OutputKind { run, study };

@@ -77,6 +77,16 @@ HWY_INLINE void store(V v, float* HWY_RESTRICT to, std::size_t count) {
   for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
 }
 
+/// Reads the first `count` groups of four at `from`, and no more: those behind may be another thread's. The other lanes are zero.
+HWY_INLINE void load_groups(const float* HWY_RESTRICT from, std::size_t count, V& a, V& b, V& c, V& d) {
+  HWY_ALIGN float buffer[4 * lanes] = {};
+  if (count < lanes) {
+    for (std::size_t l = 0; l < 4 * count; ++l) buffer[l] = from[l];
+    from = buffer;
+  }
+  hn::LoadInterleaved4(D(), from, a, b, c, d);
+}
+
 /// Writes the first `count` groups of four to `to`.
 HWY_INLINE void store_groups(V a, V b, V c, V d, float* HWY_RESTRICT to, std::size_t count) {
   if (count == lanes) {

@@ -147,7 +147,7 @@ HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil
     Wide vx = half * (old_vx + s.vx), vy = half * (old_vy + s.vy);
     if (middle) {
       V x, y, middle_vx, middle_vy;
-      hn::LoadInterleaved4(d, f.soil.motion.data() + 4 * i, x, y, middle_vx, middle_vy);
+      load_groups(f.soil.motion.data() + 4 * i, count, x, y, middle_vx, middle_vy);
       vx = wide(middle_vx), vy = wide(middle_vy);
     }
     s.x = move(soil.x, vx), s.y = move(soil.y, vy);
@@ -160,19 +160,18 @@ HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil
     const Wide dx = gone_since(soil.x_sorted, s.x), dy = gone_since(soil.y_sorted, s.y);
     const V vx_n = narrow(vx), vy_n = narrow(vy);
     V way2_i = hn::MulAdd(vx_n, vx_n, hn::Mul(vy_n, vy_n)), acceleration2_i = hn::MulAdd(ax, ax, hn::Mul(ay, ay));
+    Wide speed2_i = s.vx * s.vx + s.vy * s.vy, moved2_i = dx * dx + dy * dy;
     if (count < lanes) {
       const M some = hn::FirstN(d, count);
       way2_i = hn::IfThenElseZero(some, way2_i), acceleration2_i = hn::IfThenElseZero(some, acceleration2_i);
-      // Lanes without a particle repeat the first one.
-      const auto fill = [&](Wide& v) HWY_ATTR {
+      // Lanes without a particle, or with one of another thread's, repeat the first one.
+      for (Wide* v : {&s.rho, &s.x, &speed2_i, &moved2_i}) {
         HWY_ALIGN double values[lanes];
-        store(v, values, lanes);
+        store(*v, values, lanes);
         std::fill(values + count, values + lanes, values[0]);
-        v = load(values, lanes);
-      };
-      fill(s.rho), fill(s.x);
+        *v = load(values, lanes);
+      }
     }
-    const Wide speed2_i = s.vx * s.vx + s.vy * s.vy, moved2_i = dx * dx + dy * dy;
     way2 = hn::Max(way2, way2_i), acceleration2 = hn::Max(acceleration2, acceleration2_i);
     speed2 = max(speed2, speed2_i), moved2 = max(moved2, moved2_i), lightest = min(lightest, s.rho);
     leftmost = min(leftmost, s.x), rightmost = max(rightmost, s.x);

@@ -349,6 +349,7 @@ Outcome Driver::run() {
   if (interrupts() > 0) return Outcome::interrupted;
   if (outcome == Outcome::too_many_failed) return Outcome::too_many_failed;
   executor_.reset();
+  orphan_lock_.close();  // what is open cannot be removed on every file system
   remove_directory(paths_.work());
   if (too_many_failed(plan_, counted(plan_, ledger_.runs()))) return Outcome::too_many_failed;
   return outcome.value_or(Outcome::finished);

@@ -56,11 +56,11 @@ void link_or_copy(const fs::path& from, const fs::path& to) {
 
 /// Runs `action`; what the file system complains about becomes an IoError.
 template <class Action>
-void on_disk(const fs::path& path, Action action) {
+void on_disk(const char* verb, const fs::path& path, Action action) {
   try {
     action();
   } catch (const fs::filesystem_error& e) {
-    throw_io_error("write", e.path1().empty() ? path : e.path1(), e.code().value());
+    throw_io_error(verb, e.path1().empty() ? path : e.path1(), e.code().value());
   }
 }
 
@@ -68,14 +68,14 @@ void on_disk(const fs::path& path, Action action) {
 
 Ledger::Ledger(StudyPaths paths, const Plan& plan)
     : paths_(std::move(paths)), seed_(plan.seed), case_hash_(plan.case_hash) {
-  on_disk(paths_.root, [&] {
+  on_disk("read", paths_.root, [&] {
     scan(false);
     scan(true);
   });
 }
 
 void Ledger::make_directories() const {
-  on_disk(paths_.root, [&] {
+  on_disk("write", paths_.root, [&] {
     for (const fs::path& directory : {paths_.runs(), paths_.floor(), paths_.work(), paths_.profiles()})
       fs::create_directories(directory);
   });
@@ -124,13 +124,13 @@ void Ledger::commit(Job job) {
   const fs::path result = paths_.work(job) / "result.json";
   std::optional<Record> record = read(job, result);
   if (!record) throw IoError(result.string() + " is missing or cannot be read");
-  on_disk(paths_.root, [&] {
+  on_disk("write", paths_.root, [&] {
     // The profiles first: a study killed in between finds the result still in the working directory and does both
     // again.
     if (!job.floor) keep_profiles(*record);
     fs::rename(result, paths_.result(job));
     fs::remove(paths_.failure(job));
-    remove_directory(paths_.work(job));
+    remove_what_goes(paths_.work(job));
     fs::remove(paths_.log(job));
   });
   insert(records(job), std::move(*record));
@@ -160,8 +160,8 @@ void Ledger::commit_failure(Job job, const Failure& failure) {
                              {"log_tail", failure.log_tail},
                              {"rerun", failure.rerun}};
   write_file_atomically(paths_.failure(job), json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
-  on_disk(paths_.root, [&] {
-    remove_directory(paths_.work(job));
+  on_disk("write", paths_.root, [&] {
+    remove_what_goes(paths_.work(job));
     fs::remove(paths_.log(job));
   });
   insert(records(job), {.index = job.index, .reason = failure.reason});
@@ -170,7 +170,7 @@ void Ledger::commit_failure(Job job, const Failure& failure) {
 void Ledger::forget_failures() {
   for (const bool floor : {false, true}) {
     auto& all = floor ? floor_ : runs_;
-    on_disk(paths_.root, [&] {
+    on_disk("write", paths_.root, [&] {
       for (const Record& r : all)
         if (!r.done) fs::remove(paths_.failure({floor, r.index}));
     });

@@ -207,8 +207,11 @@ class Studies(StudyTest):
 
     def test_a_directory_that_is_listed_late(self):
         """As on NFS: what is not listed yet may well be there."""
-        self.start(LD_PRELOAD=str(pathlib.Path(TALUSD).parent.parent / "tests/late_listing.so"))
+        late = pathlib.Path(TALUSD).parent.parent / "tests/late_listing.so"
+        self.assertTrue(late.exists())
+        self.start(LD_PRELOAD=str(late))
         self.finishes()
+        self.assertNotIn("LD_PRELOAD", self.said())  # the loader says so where it cannot
         self.same_as_local()
 
     def test_refused_by_slurm(self):

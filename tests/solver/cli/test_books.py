@@ -76,6 +76,13 @@ class Books(Directory):
         self.assertIn("seed", self.prepare(4, seed=SEED + 1, code=3).stderr)
         self.assertEqual(load(self.out / "plan.json")["seed"], SEED)
 
+    def test_statistics_of_a_prepared_study_leave_it_able_to_go_on(self):
+        self.prepare(2)
+        self.stats("--from-runs")
+        self.prepare(2)
+        done = talus("study", self.file, "--realizations", 2, "--seed", SEED, "--out", self.out, "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_preparing_a_bad_case_is_3(self):
         self.file.write_text("{}")
         self.prepare(1, code=3)

@@ -130,6 +130,41 @@ TEST(Integrator, VectorisedStepsDoNotDependOnTheThreadsThatThereAre) {
   EXPECT_EQ(within.rho, alone.rho);
 }
 
+/// What a step says of its particles is theirs alone, wherever the threads' shares end: here every particle is brought to rest by
+/// an acceleration, which those beyond a share's end must not lend to it.
+TEST(Integrator, ExtremesOfAStepAreThoseOfItsParticles) {
+  using namespace testing_support;
+  const int before = omp_get_max_threads();
+  for (const int threads : {1, 2, 3, 5, 7}) {
+    omp_set_num_threads(threads);
+    const double dx = 0.1, dt = 1e-3;
+    const FlowConstants k = constants(dx);
+    Soil soil = random_soil(200, 9, dx, 11);
+    WallParticles walls = flat_walls(200, dx);
+    const CellList soil_cells = sorted(soil, 3 * k.h), wall_cells = sorted(walls, 3 * k.h);
+    std::ranges::fill(soil.vx, 0.0), std::ranges::fill(soil.vy, 0.0);
+    VectorisedFlow flow(k, soil);
+    flow.renew(soil, walls, soil_cells, wall_cells, 0.0, 0.1 * k.h);
+    flow.evaluate(soil, walls, 0.0, true);
+    flow.unpack(soil);
+    for (std::size_t i = 0; i < soil.size(); ++i) soil.vx[i] = -dt * soil.ax[i], soil.vy[i] = -dt * soil.ay[i];
+    flow.state_changed();
+    const Motion motion = flow.step(soil, walls, dt, false);
+    double speed = 0.0, moved = 0.0, left = 1e300, right = -1e300;
+    for (std::size_t i = 0; i < soil.size(); ++i) {
+      speed = std::max(speed, norm(soil.velocity(i)));
+      moved = std::max(moved, std::hypot(soil.x[i] - soil.x_sorted[i], soil.y[i] - soil.y_sorted[i]));
+      left = std::min(left, soil.x[i]), right = std::max(right, soil.x[i]);
+    }
+    EXPECT_NEAR(motion.speed, speed, 1e-12 * speed) << threads << " threads";
+    EXPECT_NEAR(motion.moved, moved, 1e-12 * moved) << threads << " threads";
+    EXPECT_EQ(motion.leftmost, left);
+    EXPECT_EQ(motion.rightmost, right);
+    EXPECT_TRUE(motion.sound);
+  }
+  omp_set_num_threads(before);
+}
+
 TEST(Integrator, VectorisedStepsEqualThePlainOnes) {
   for (const auto integrator : {Integrator::rk2, Integrator::leapfrog}) {
     double way = 0.0;
