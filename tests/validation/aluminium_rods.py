@@ -9,9 +9,12 @@ from snapshots import Snapshots, surface
 
 TITLE = "Aluminium rods"
 SOURCE = "Bui, Fukagawa, Sako & Ohno, Int. J. Numer. Anal. Meth. Geomech. 32 (2008) 1537-1570: phi 19.8 deg, c 0, column 0.2 x 0.1 m"
-NOT_MET = ["failure line, rms over the height"]
-REMARKS = "The contour of 5 mm lies below the measured failure line by a little more than the tenth of the height that was wanted."
-HEIGHT, TOE = 0.1, 0.43  # [m]; the experiment's toe lies between 0.42 and 0.44
+NOT_MET = {"toe, to where 4 mm high": 0.12, "failure line, rms over the height": 0.12}
+REMARKS = ("The body of the deposit agrees within 3 % of the height. Its foot lies too far out, the more so the thinner it is, and refinement does not bring it back (the reading of "
+           "the experiment's last millimetres is no better than a row of rods, 1.6 to 3 mm thick). The contour of 5 mm lies above the measured failure line for x > 0.08 m, "
+           "by up to 0.2 of the height: the model leaves more at rest near the face than the experiment did, and refinement does not bring the two together. Which displacement an eye takes "
+           "for the failure line is not known: the contour of 2 mm is within the tenth of the height that was wanted.")
+HEIGHT, FOOTS = 0.1, (0.008, 0.004)  # heights at which toes are compared: two rows at the coarsest and the middle spacing [m]
 
 
 def curve(name):
@@ -30,34 +33,40 @@ def measure(work, coarse):
         found = surface(position, x, spacing)
         start = position - displacement[:, :2]
         levels.append({"spacing_m": spacing, "surface_m": found.tolist(), "rms_over_height": float(np.sqrt(np.mean((found - y) ** 2)) / HEIGHT),
-                       "toe_m": toe(found, x, spacing), "farthest_m": result["influence_zone_m"], "connected_m": result["front_connected_m"],
-                       "failure_line": failure_line(start, np.linalg.norm(displacement, axis=1), spacing)})
+                       "foot_m": [foot(found, x, height) for height in FOOTS], "farthest_m": result["influence_zone_m"], "connected_m": result["front_connected_m"],
+                       **{f"moved_{limit}_mm": failure_line(start, np.linalg.norm(displacement, axis=1), spacing, limit) for limit in (2, 5, 10)}})
     return {"levels": levels}
 
 
-def toe(heights, x, spacing):
-    """Where the deposit becomes thinner than two rows of particles: what an eye takes for the toe of a heap of rods."""
-    return float(np.interp(-2 * spacing, -heights[5:], x[5:]))
+def foot(heights, x, height):
+    """Where the deposit comes down to a height [m]."""
+    return float(np.interp(-height, -np.asarray(heights)[5:], x[5:]))
 
 
-def failure_line(start, moved, spacing):
-    """Height, by x of the original column, below which material moved less than 5 mm."""
+def apart(level, limit=5):
+    """Rms of the contour less the measured failure line, over the height."""
+    x, y = curve("failure_line")
+    line = np.array(level[f"moved_{limit}_mm"])
+    return float(np.sqrt(np.mean((np.interp(x, line[:, 0], line[:, 1]) - y) ** 2))) / HEIGHT
+
+
+def failure_line(start, moved, spacing, limit):
+    """Height, by x of the original column, below which material moved less than `limit` [mm]."""
     line = []
     for at in np.arange(0.01, 0.2, 0.01):
         column = np.abs(start[:, 0] - at) < spacing
-        still = column & (moved < 0.005)
+        still = column & (moved < 0.001 * limit)
         line.append([round(float(at), 3), float(start[still, 1].max() + 0.5 * spacing) if still.any() else 0.0])
     return line
 
 
 def criteria(numbers):
     finest = numbers["levels"][-1]
-    x, y = curve("failure_line")
-    line = np.array(finest["failure_line"])
-    apart = np.interp(x, line[:, 0], line[:, 1]) - y
-    return [at_most("surface, rms over the height", finest["rms_over_height"], 0.10),
-            at_most("toe, relative error", abs(finest["toe_m"] / TOE - 1), 0.08),
-            at_most("failure line, rms over the height", float(np.sqrt(np.mean(apart ** 2))) / HEIGHT, 0.10)]
+    x, y = curve("final_surface")
+    found = [at_most("surface, rms over the height", finest["rms_over_height"], 0.10)]
+    for height, at in zip(FOOTS, finest["foot_m"]):
+        found.append(at_most(f"toe, to where {1000 * height:g} mm high, relative error", abs(at / foot(y, x, height) - 1), 0.08))
+    return found + [at_most("failure line, rms over the height", apart(finest), 0.10)]
 
 
 def section(numbers, directory):
@@ -67,10 +76,12 @@ def section(numbers, directory):
     x, _ = curve("final_surface")
     for level in numbers["levels"]:
         (drawn,) = axes.plot(x, level["surface_m"], label=f"dx = {1000 * level['spacing_m']:g} mm")
-        axes.plot(*np.array(level["failure_line"]).T, "--", color=drawn.get_color())
+        axes.plot(*np.array(level["moved_5_mm"]).T, "--", color=drawn.get_color())
     axes.set(xlabel="x [m]", ylabel="y [m]")
     axes.legend()
-    rows = [[1000 * l["spacing_m"], l["rms_over_height"], l["toe_m"], l["connected_m"], l["farthest_m"]] for l in numbers["levels"]]
-    return table(["dx [mm]", "surface rms / height", "toe [m]", "front of the connected body [m]", "farthest particle [m]"], rows) + \
-        "\nToe: where the deposit becomes thinner than two rows (experiment 0.42-0.44 m). Dashed: contour of 5 mm of displacement.\n\n" + \
-        fig.save(figure, directory, "aluminium_rods")
+    measured = curve("final_surface")
+    rows = [["experiment", "", *(foot(measured[1], measured[0], height) for height in FOOTS), "", "", "", "", ""]]
+    rows += [[f"{1000 * l['spacing_m']:g}", l["rms_over_height"], *l["foot_m"], l["connected_m"], l["farthest_m"], *(apart(l, limit) for limit in (2, 5, 10))] for l in numbers["levels"]]
+    return table(["dx [mm]", "surface rms / height", *(f"{1000 * height:g} mm high at [m]" for height in FOOTS), "front of the connected body [m]", "farthest particle [m]",
+                  *(f"contour of {limit} mm, rms from the failure line / height" for limit in (2, 5, 10))], rows) + \
+        "\nDashed: contour of 5 mm of displacement.\n\n" + fig.save(figure, directory, "aluminium_rods")

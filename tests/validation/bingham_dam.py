@@ -14,9 +14,13 @@ TITLE = "Bingham dam break"
 SOURCE = ("slow, thin: lubrication theory, q = rho g S Y^2 (3 h - Y)/(6 eta), Y = h - tau_y/(rho g S) where it is positive, S the slope of the surface (Liu & Mei, J. Fluid Mech. 207 "
           "(1989) 505-529; Matson & Hogg, J. Non-Newtonian Fluid Mech. 142 (2007) 79-94), integrated here. Tailings: gypsum, East Texas 1966, 11 m deep, 1400 kg/m3, tau_y = 1 kPa, eta = 50 Pa s; "
           "seen: about 300 m in 60 to 120 s (Jeyapalan, Duncan & Seed, J. Geotech. Eng. 109 (1983) 172-189)")
-REMARKS = ("Taken at the farthest particle instead, the slow front is 11 % (from the start) to 16 % (from the shape after 5 s) ahead: the last two rows of particles cannot follow theory's thin tip. "
-           "The field's figures are as later studies cite them; the original was not at hand. Of the tailings, the plane model is compared as it is: the real flow could spread to the sides, and the shape of the pond is not known here. With a three-dimensional Bingham "
-           "model of the Navier-Stokes equations 73 % of the observed distance was found (Appl. Sci. 10 (2020) 6501). What sets the pace at the end is how a Bingham fluid comes to rest, like 1/t.")
+NOT_MET = {"run-out of the tailings over the field's, less 1": 0.45}
+REMARKS = ("The front of the slow block is where the surface through its particles is 0.2 m high, which is known to one spacing on either side; its farthest particles are further out than theory's thin tip, "
+           "which the last two rows cannot follow. "
+           "The field's figures are as later studies cite them; the original was not at hand. Of the tailings, the plane model is compared as it is: the real flow could spread to the sides, and the shape of the pond "
+           "is not known here. It falls short of the field, and has not converged in the spacing. With these parameters even a soil that stops everywhere at yield gets no further than 277 m: the field's 300 m "
+           "need inertia, or weaker soil. (A three-dimensional Bingham model of the Navier-Stokes equations found 73 % of the observed distance, Appl. Sci. 10 (2020) 6501; that ours is near it says "
+           "nothing.) What sets the pace at the end is how a Bingham fluid comes to rest, like 1/t.")
 HALF_WIDTH, YIELD, VISCOSITY = 4.0, 0.02, 5000.0  # of the slow block: [m], tau_y/(rho g H), [Pa s]
 TIMES = [2, 5, 10, 15, 20, 30, 40]  # [s]
 SHALLOW_FROM = 5  # by then the block has become a shallow heap [s]
@@ -94,17 +98,23 @@ def measure(work, coarse):
     return found
 
 
-def error(level, times):
+def error(level, times, measure="front_m"):
     """Rms difference of the front from lubrication theory, both from the same shape, over the way that theory makes it go from there."""
-    late = [front for t, front in zip(times, level["front_m"]) if t > SHALLOW_FROM]
-    start = level["front_m"][times.index(SHALLOW_FROM)]
+    late = [front for t, front in zip(times, level[measure]) if t > SHALLOW_FROM]
     wanted = np.array(level["lubrication_from_there_m"])
-    return float(np.sqrt(np.mean((np.array(late) - wanted) ** 2)) / (wanted[-1] - start))
+    return float(np.sqrt(np.mean((np.array(late) - wanted) ** 2)) / way(level, times))
+
+
+def way(level, times):
+    """Of theory's front from the shape that it starts from [m]."""
+    return level["lubrication_from_there_m"][-1] - level["front_m"][times.index(SHALLOW_FROM)]
 
 
 def criteria(numbers):
-    return [at_most("front against lubrication theory, rms over its way", error(numbers["slow"][-1], numbers["times"]), 0.1),
-            at_most("run-out of the tailings over that of a soil everywhere at yield", numbers["tailings"][-1]["runout_m"][-1] / static_runout(), 1.0)]
+    slow, times, runout = numbers["slow"][-1], numbers["times"], numbers["tailings"][-1]["runout_m"][-1]
+    return [at_most("front against lubrication theory, rms over its way", error(slow, times), 2 * slow["spacing_m"] / way(slow, times), "two spacings, within which the surface is known"),
+            at_most("run-out of the tailings over that of a soil everywhere at yield", runout / static_runout(), 1.0, "closed form, without inertia"),
+            at_most("run-out of the tailings over the field's, less 1", abs(runout / FIELD - 1), 0.2, "the field's figures are round")]
 
 
 def section(numbers, directory):
@@ -122,6 +132,7 @@ def section(numbers, directory):
     rows = []
     for level in numbers["slow"]:
         rows.append([f"dx = {level['spacing_m']:g} m", *level["front_m"][-len(level["lubrication_from_there_m"]):], f"{100 * error(level, numbers['times']):.1f} %"])
+        rows.append(["its farthest particle", *level["farthest_m"][-len(level["lubrication_from_there_m"]):], f"{100 * error(level, numbers['times'], 'farthest_m'):.1f} %"])
         rows.append(["lubrication from there", *level["lubrication_from_there_m"], ""])
     text += table(["front [m] at"] + [f"{t:g} s" for t in numbers["times"] if t > SHALLOW_FROM] + ["rms difference over the way"], rows)
     text += f"\nTailings: run-out beyond the dam [m]; seen in the field: {FIELD:g} m; everywhere at yield: {static_runout():.0f} m:\n\n"

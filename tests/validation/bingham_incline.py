@@ -6,12 +6,12 @@ import numpy as np
 
 import figures as fig
 import talus_runs
-from experiment import at_most, order_of_convergence, table
+from experiment import at_least, at_most, order_of_convergence, table
 from snapshots import Snapshots
 
 TITLE = "Bingham layer on an incline"
 SOURCE = "closed form: G = rho g sin(theta), plug above Y = h - tau_y/G, u = U (1 - ((y - Y)/Y)^2) below it, U = G Y^2/(2 eta), flux U (h - Y/3)"
-NOT_MET = ["rms error of the profile over U"]
+NOT_MET = {"rms error of the profile over U": 2.75 * 0.025 / 0.5}  # 2.75 dx/h at the coarse experiment's finest spacing
 REMARKS = "The profile was wanted within 1.6 dx/h of U; with the default kernel it is within 2.5 dx/h. It converges, but its error is half as large again."
 THICKNESS, DENSITY, TAU_Y, ETA, THETA = 0.5, 1500.0, 1000.0, 900.0, math.radians(20)
 G = DENSITY * 9.81 * math.sin(THETA)
@@ -65,7 +65,7 @@ def criteria(numbers):
     order = order_of_convergence([l["spacing_m"] for l in levels], [l["rms"] for l in levels])
     return [at_most(f"rms error of the profile over U, dx = {levels[-1]['spacing_m']:g} m", levels[-1]["rms"], 1.6 * levels[-1]["spacing_m"] / THICKNESS),
             at_most("error of the flux", errors_of_flux(numbers)[-1], 2 * levels[-1]["spacing_m"] / THICKNESS),
-            at_most("minus the order of convergence of the profile", -order, -0.8)]
+            at_least("order of convergence of the profile", order, 0.8)]
 
 
 def section(numbers, directory):

@@ -6,17 +6,20 @@ import numpy as np
 
 import figures as fig
 import talus_runs
-from experiment import at_most, read_table, table, within
+from experiment import at_most, read_table, table
 from snapshots import Snapshots
 
 TITLE = "Water dam break"
 SOURCE = "Martin & Moyce, Phil. Trans. R. Soc. A 244 (1952) 312-324, n^2 = 2; T = t sqrt(2 g/a), Z = front/a"
-NOT_MET = ["rms error of the front, T <= 3", "rms error, finest over coarsest"]
-REMARKS = ("The computed front leads the measured one from the start, and the more so the finer the spacing: in the model the gate is gone at once and the water has next to no "
-           "friction on the floor. A gate takes time, and in the experiment the origin of time was not observed but set. One delay of the release, the same for all points, takes "
-           "most of the difference away; without it the wanted 8 % is not met, and the error does not fall with the spacing but tends to that of frictionless water. "
-           "A smaller error would be no better model: with gravity at 0.8 of its value, or with ten times the artificial viscosity, it is 5.9 and 7.0 % at a/40, against 9.7. "
-           "That the water moves as it should is seen by its energy: what it falls becomes motion, but for what the artificial viscosity and the floor take, less with every refinement. (The bound of 0.85 was set after a first look.)")
+NOT_MET = {"rms error of the front, T <= 3": 0.14, "rms error, finest over coarsest": 2.0}
+REMARKS = ("The computed front leads the measured one from the start, and the more so the finer the spacing: in the model the dam is gone at once and the water has next to no "
+           "friction on the floor. In the experiment the dam takes time to go, and the origin of time was not observed but set. One delay of the release, the same for all points "
+           "(0.22 in T is 12 ms), takes most of the difference away; without it the wanted 8 % is not met, and the error has grown with every refinement so far, towards that of water "
+           "on a frictionless floor. A smaller error would be no better model: with gravity at 0.8 of its value, or with ten times the artificial viscosity, it was 5.9 and 7.0 % at a/40 "
+           "(each tried once), against 9.7. A delay can hide such an error only in part: the bound of the delayed front is twice what the experiment's two sizes differ by, which "
+           "gravity at 0.8 exceeds. That the water moves as it should is seen by its energy: what it falls becomes motion, but for what the artificial viscosity takes, mostly in a layer on "
+           "the floor: with nu = alpha h c/8 it is some sqrt(nu t) deep, so that the loss falls like the root of the spacing; at T = 2, over a depth of 0.6 a, it is estimated "
+           "as sqrt(dx/a). (These bounds were set after the runs, but from their reasons.) The case that is shipped, `dam-break.json`, has `free_slip` walls; here they are `no_slip`, the default.")
 A = 0.05715  # width of the column [m]
 LATEST = 3.0
 ENERGY_AT = 2.0  # T
@@ -25,14 +28,17 @@ ENERGY_AT = 2.0  # T
 def measure(work, coarse):
     levels = []
     for per_a in (20, 40) if coarse else (20, 40, 80):
-        directory = work / f"dam_break-rough-{per_a}"
-        talus_runs.run(talus_runs.CASES / "dam-break.json", directory, {"particle_spacing_m": A / per_a, "walls.slip": "no_slip"})
-        history = talus_runs.history(directory)
-        T = [t * math.sqrt(2 * 9.81 / A) for t in history["time_s"]]
-        Z = [(front + 0.5 * A / per_a) / A for front in history["front_m"]]
-        levels.append({"spacings_in_a": per_a, "T": T, "Z": Z, "rms": rms_error(T, Z), "kept": energy_kept(directory, history),
-                       **after_delay(T, Z)})
-    return {"levels": levels}
+        levels.append(collapse(work, per_a, "no_slip"))
+    return {"levels": levels, "frictionless": collapse(work, levels[-1]["spacings_in_a"], "free_slip")}
+
+
+def collapse(work, per_a, slip):
+    directory = work / f"dam_break-{slip}-{per_a}"
+    talus_runs.run(talus_runs.CASES / "dam-break.json", directory, {"particle_spacing_m": A / per_a, "walls.slip": slip})
+    history = talus_runs.history(directory)
+    T = [t * math.sqrt(2 * 9.81 / A) for t in history["time_s"]]
+    Z = [(front + 0.5 * A / per_a) / A for front in history["front_m"]]
+    return {"spacings_in_a": per_a, "T": T, "Z": Z, "rms": rms_error(T, Z), "kept": energy_kept(directory, history), **after_delay(T, Z)}
 
 
 def energy_kept(directory, history):
@@ -58,26 +64,45 @@ def after_delay(T, Z):
     return {"delay": float(delays[int(np.argmin(errors))]), "rms_after_delay": min(errors)}
 
 
+SERIES = ("MM1952_n2_2_a1.125in", "MM1952_n2_2_a2.25in")
+
+
+def points(series):
+    """T and Z of one size of the experiment."""
+    rows = [row for row in read_table("martin_moyce_1952.csv") if row["source"] == series]
+    return np.array([float(r["T"]) for r in rows]), np.array([float(r["Z"]) for r in rows])
+
+
+def scatter():
+    """Relative rms difference of the experiment's two sizes up to T = 3, the smaller one's points against the other's line."""
+    (T, Z), (other_T, other_Z) = map(points, SERIES)
+    common = (T <= LATEST) & (T >= other_T[0]) & (T <= other_T[-1])
+    line = np.interp(T[common], other_T, other_Z)
+    return float(np.sqrt(np.mean((Z[common] / line - 1) ** 2)))
+
+
 def criteria(numbers):
     levels = numbers["levels"]
+    spacing_ratio = levels[0]["spacings_in_a"] / levels[-1]["spacings_in_a"]
     finest = f"a/{levels[-1]['spacings_in_a']}"
     return [at_most(f"rms error of the front, T <= 3, {finest}", levels[-1]["rms"], 0.08),
             at_most("rms error, finest over coarsest", levels[-1]["rms"] / levels[0]["rms"], 1.0),
-            at_most(f"rms error with the release delayed, T <= 3, {finest}", levels[-1]["rms_after_delay"], 0.08),
-            within(f"kinetic energy over what gravity gave, T = 2, {finest}", levels[-1]["kept"], 0.85, 1.0),
-            at_most("its loss, finest over coarsest", (1 - levels[-1]["kept"]) / (1 - levels[0]["kept"]), 1.0)]
+            at_most(f"rms error with the release delayed, T <= 3, {finest}", levels[-1]["rms_after_delay"], 2 * scatter(), "twice the scatter of the experiment"),
+            at_most(f"energy lost until T = 2, {finest}", 1 - levels[-1]["kept"], levels[-1]["spacings_in_a"] ** -0.5, "estimate of a layer on the floor, sqrt(dx/a)"),
+            at_most("energy lost, finest over coarsest", (1 - levels[-1]["kept"]) / (1 - levels[0]["kept"]), spacing_ratio ** 0.3, "half order is expected, 0.3 asked for")]
 
 
 def section(numbers, directory):
     figure, axes = fig.plt.subplots()
-    for series, marker in (("MM1952_n2_2_a1.125in", "o"), ("MM1952_n2_2_a2.25in", "s")):
-        rows = [row for row in read_table("martin_moyce_1952.csv") if row["source"] == series and float(row["T"]) <= 4]
-        axes.plot([float(r["T"]) for r in rows], [float(r["Z"]) for r in rows], marker, mfc="none", color="k",
+    for series, marker in zip(SERIES, "os"):
+        axes.plot(*points(series), marker, mfc="none", color="k",
                   label=f"Martin & Moyce, a = {series.split('_a')[1][:-2]} in")
     for level in numbers["levels"]:
         axes.plot(level["T"], level["Z"], label=f"a/{level['spacings_in_a']}")
-    axes.set(xlabel="T", ylabel="Z", xlim=(0, 4))
+    axes.plot(numbers["frictionless"]["T"], numbers["frictionless"]["Z"], ":", label=f"a/{numbers['frictionless']['spacings_in_a']}, frictionless")
+    axes.set(xlabel="T", ylabel="Z", xlim=(0, 4), ylim=(1, 6))
     axes.legend()
-    rows = [[l["spacings_in_a"], l["rms"], l["delay"], l["rms_after_delay"], l["kept"]] for l in numbers["levels"]]
-    return table(["particles across a", "rms error of Z, T <= 3", "delay of the release in T", "rms error with it", "kinetic energy over what gravity gave, T = 2"], rows) + "\n" + \
-        fig.save(figure, directory, "dam_break")
+    rows = [[l["spacings_in_a"], slip, l["rms"], l["delay"], l["rms_after_delay"], l["kept"]]
+            for l, slip in [*((l, "no slip") for l in numbers["levels"]), (numbers["frictionless"], "free slip")]]
+    return table(["particles across a", "walls", "rms error of Z, T <= 3", "delay of the release in T", "rms error with it", "kinetic energy over what gravity gave, T = 2"], rows) + \
+        f"\nThe experiment's two sizes differ by {100 * scatter():.1f} % (rms, T <= 3).\n\n" + fig.save(figure, directory, "dam_break")

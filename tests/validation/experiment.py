@@ -3,34 +3,42 @@
 measure(work, coarse)     runs what is missing under the directory `work` and returns numbers (JSON); `coarse`: a few minutes at most
 criteria(numbers)         what must hold: a list of Criterion
 section(numbers, figures) Markdown for the report; writes its figures into the directory `figures`
+
+Where it cannot meet a criterion, NOT_MET has how that one begins and the value that it still must not exceed, and REMARKS say why.
 """
 
 import csv
 import pathlib
 from typing import NamedTuple
 
+WANTED = "wanted beforehand"
 DATA = pathlib.Path(__file__).resolve().parent / "data"
 
 
 class Criterion(NamedTuple):
-    """value must lie in [low, high]; one of them may be None."""
+    """value must lie in [low, high]; one of them may be None. `why`: where the bounds come from."""
 
     what: str
     value: float
     low: float | None
     high: float | None
+    why: str
 
     @property
     def met(self):
         return (self.low is None or self.value >= self.low) and (self.high is None or self.value <= self.high)
 
 
-def at_most(what, value, high):
-    return Criterion(what, value, None, high)
+def at_most(what, value, high, why=WANTED):
+    return Criterion(what, float(value), None, high, why)
 
 
-def within(what, value, low, high):
-    return Criterion(what, value, low, high)
+def at_least(what, value, low, why=WANTED):
+    return Criterion(what, float(value), low, None, why)
+
+
+def within(what, value, low, high, why=WANTED):
+    return Criterion(what, float(value), low, high, why)
 
 
 def read_table(name):

@@ -34,12 +34,12 @@ def span(criterion):
 def page(results, out):
     """Markdown of all experiments that have numbers."""
     modules = {name: importlib.import_module(name) for name in results}
-    lines = ["# Validation", "", "Written by `tests/validation/report.sh`; every number comes from a run. One set of numerics, the default one, is used for all; what differs is "
-             "the material, and the speed of sound where the fall height does not set it well.", "",
-             "| experiment | criterion | found | wanted | |", "|---|---|---|---|---|"]
+    lines = ["# Validation", "", "Written by `tests/validation/report.sh`. Every number of a table comes from a run that this repeats; remarks say where one does not.", "",
+             (HERE / "summary.md").read_text(), "## All criteria", "",
+             "| experiment | criterion | found | wanted | why so | |", "|---|---|---|---|---|---|"]
     for name, numbers in results.items():
         for c in modules[name].criteria(numbers):
-            lines.append(f"| [{modules[name].TITLE}](#{anchor(modules[name].TITLE)}) | {c.what} | {c.value:.3g} | {span(c)} | {'met' if c.met else '**not met**'} |")
+            lines.append(f"| [{modules[name].TITLE}](#{anchor(modules[name].TITLE)}) | {c.what} | {c.value:.3g} | {span(c)} | {c.why} | {'met' if c.met else '**not met**'} |")
     for name, numbers in results.items():
         module = modules[name]
         lines += ["", f"## {module.TITLE}", "", f"Source: {module.SOURCE}.", "", module.section(numbers, out / "figures").rstrip()]

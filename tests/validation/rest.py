@@ -10,6 +10,10 @@ from snapshots import Snapshots
 
 TITLE = "Rest and the angle of failure"
 SOURCE = "closed forms: p = rho g depth; an infinite cohesionless layer fails at tan(theta) = tan(phi), with Eq. 7 as printed at sqrt(3) tan(phi)"
+NOT_MET = {"heap fails, paper shear rate [": 49.0}
+REMARKS = ("A layer without ends fails in simple shear, and so does the heap with the consistent shear rate. With Eq. 7 as printed the heap stands some degrees steeper than "
+           "was wanted. It may: its stress parallel to the slope can exceed the one across it, which lets the law `tau_y = p tan(phi)` hold slopes up to the bound *any stress*, 15 degrees "
+           "above simple shear at this friction and 3 above it at the true one.")
 PHI = 25.0
 HEIGHT = 2.0  # of the heaps [m]
 THICKNESS, LENGTH = 0.5, 24.0  # of the layers [m]
@@ -32,16 +36,16 @@ def moved(directory):
 
 
 def gentle_pile(work, spacing):
-    """Farthest way of a particle in 10 s, and of it that after the first second, in which the pile settles under its own weight [m]."""
+    """Farthest way of a particle in 10 s, and in parts of them: first the pile settles under its own weight [m]."""
     found = {}
     for law in ("elastic", "regularized"):
         directory = work / f"pile-{law}-{spacing:g}"
         case = heap(15, spacing, 10, **{"yield": law})
-        case["time"]["snapshot_times_s"] = [1]
+        case["time"]["snapshot_times_s"] = [1, 5]
         talus_runs.run(case, directory)
         snapshots = Snapshots(directory)
-        late = np.linalg.norm(snapshots.position(-1) - snapshots.position(1), axis=1)
-        found[law] = {"way": float(moved(directory).max()), "late": float(late.max())}
+        farthest = lambda begin, end: float(np.linalg.norm(snapshots.position(end) - snapshots.position(begin), axis=1).max())
+        found[law] = {"way": farthest(0, -1), "1 to 5 s": farthest(1, 2), "5 to 10 s": farthest(2, -1)}
     return found
 
 
@@ -121,10 +125,11 @@ def strongest(phi):
 
 def measure(work, coarse):
     spacing, steps = (0.1, 4) if coarse else (0.05, 5)
-    found = {"spacing_m": spacing, "tank": tank(work, spacing), "pile": gentle_pile(work, 0.1), "layer": {}, "heap": {}}
+    spacings = (0.1,) if coarse else (0.1, 0.05)
+    found = {"spacing_m": spacing, "tank": tank(work, spacing), "pile": {f"{dx:g}": gentle_pile(work, dx) for dx in spacings}, "layer": {}, "heap": {}}
     for norm, angle in NORMS.items():
         found["layer"][norm] = threshold(work, layer_fails, 0.05, norm, angle - 6, angle + 6, steps)
-        found["heap"][norm] = threshold(work, fails, spacing, norm, angle - 6, strongest(angle) + 2, steps)
+        found["heap"][norm] = {f"{dx:g}": threshold(work, fails, dx, norm, angle - 6, strongest(angle) + 2, steps) for dx in spacings}
     return found
 
 
@@ -135,11 +140,16 @@ def edge(found):
 def criteria(numbers):
     spacing, tank_found = numbers["spacing_m"], numbers["tank"]
     found = [at_most("tank: rms error of the pressure over that at the bottom", tank_found["rms_pressure"], 0.03),
-             at_most("tank: farthest way of a particle in 5 s, in spacings", tank_found["max_moved_m"] / spacing, 1.0),
-             at_most("pile of 15 degrees, elastic: farthest way in 10 s, in spacings", numbers["pile"]["elastic"]["way"] / 0.1, 0.5)]
+             at_most("tank: farthest way of a particle in 5 s, in spacings", tank_found["max_moved_m"] / spacing, 1.0)]
+    for dx, pile in numbers["pile"].items():
+        found.append(at_most(f"pile of 15 degrees, elastic, dx = {dx} m: farthest way in 10 s, in spacings", pile["elastic"]["way"] / float(dx), 0.5))
     for norm, angle in NORMS.items():
+        heap_found = list(numbers["heap"][norm].values())[-1]
+        half_step = 0.5 * (heap_found["high"] - heap_found["low"])
         found.append(within(f"layer fails, {norm} shear rate [deg]", edge(numbers["layer"][norm]), angle - 2, angle + 2))
-        found.append(within(f"heap fails, {norm} shear rate [deg]", edge(numbers["heap"][norm]), angle - 2, strongest(angle) + 2))
+        found.append(within(f"heap fails, {norm} shear rate [deg]", edge(heap_found), angle - 2, angle + 2))
+        found.append(within(f"heap fails, {norm} shear rate, any stress [deg]", edge(heap_found), angle - 0.5 - half_step, strongest(angle) + half_step,
+                            "simple shear to any stress, and half a step of the bisection"))
     return found
 
 
@@ -147,16 +157,13 @@ def section(numbers, directory):
     spacing = numbers["spacing_m"]
     text = f"Spacing {spacing:g} m. Tank of water 2 m x 1 m after 5 s: rms error of the pressure {100 * numbers['tank']['rms_pressure']:.2f} % of that at the bottom, " \
            f"fastest particle {1000 * numbers['tank']['max_speed_m_s']:.1f} mm/s.\n\n"
-    text += f"Pile of 15 degrees, phi = 25 deg, {HEIGHT:g} m high, dx = 0.1 m, farthest way of a particle:\n\n"
-    text += table(["law", "in 10 s [m]", "of that after 1 s [m]", "in 10 s / dx"], [[law, p["way"], p["late"], p["way"] / 0.1] for law, p in numbers["pile"].items()])
-    text += "\nThe elastic pile settles by a few centimetres; the regularised one creeps several times as far.\n"
+    text += f"Pile of 15 degrees, phi = 25 deg, {HEIGHT:g} m high, farthest way of a particle:\n\n"
+    text += table(["law", "dx [m]", "in 10 s [m]", "from 1 to 5 s [m]", "from 5 to 10 s [m]", "in 10 s / dx"],
+                  [[law, dx, p["way"], p["1 to 5 s"], p["5 to 10 s"], p["way"] / float(dx)] for dx, pile in numbers["pile"].items() for law, p in pile.items()])
     text += f"\nWhere slopes of phi = 25 deg begin to fail: a layer {THICKNESS:g} m thick on an incline (its middle moves faster in the last half second of 2 s than in the one before), and a heap " \
             f"{HEIGHT:g} m high (a hundredth of it has moved further than dx in 5 s):\n\n"
     rows = []
     for norm, angle in NORMS.items():
-        for shape in ("layer", "heap"):
-            e = numbers[shape][norm]
-            rows.append([shape, norm, f"{angle:.1f}", f"{strongest(angle):.1f}", f"{e['low']:.1f}", f"{e['high']:.1f}"])
-    text += table(["shape", "shear rate", "simple shear [deg]", "any stress [deg]", "holds at [deg]", "fails at [deg]"], rows)
-    return text + "\nA layer without ends fails in simple shear. A heap may brace itself: its stress parallel to the slope can exceed the one across it, which lets the law " \
-        "`tau_y = p tan(phi)` hold slopes up to the bound *any stress*.\n"
+        for shape, dx, e in [("layer", "0.05", numbers["layer"][norm]), *(("heap", dx, e) for dx, e in numbers["heap"][norm].items())]:
+            rows.append([shape, dx, norm, f"{angle:.1f}", f"{strongest(angle):.1f}", f"{e['low']:.1f}", f"{e['high']:.1f}"])
+    return text + table(["shape", "dx [m]", "shear rate", "simple shear [deg]", "any stress [deg]", "holds at [deg]", "fails at [deg]"], rows)
