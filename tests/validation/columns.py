@@ -127,7 +127,7 @@ def section(numbers, directory):
     right.loglog([r["a"] for r in finest], [r["height"] for r in finest], "o")
     left.set(xlabel="a", ylabel="run-out / half width")
     right.set(xlabel="a", ylabel="height / half width")
-    left.legend()
+    left.legend(fontsize=6, loc="upper left")
     figure.tight_layout()
     counts = [level["spacings_in_half_width"] for level in numbers["levels"]]
     rows = [[per_a[0]["a"], *(r[key] for key in ("runout", "farthest", "height") for r in per_a)] for per_a in zip(*(level["rows"] for level in numbers["levels"]))]
