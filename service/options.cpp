@@ -126,8 +126,9 @@ Options read_options(int argc, char** argv) {
   else if (const std::string why = split_listen(listen, config); !why.empty()) options.exit = wrong("--listen " + why);
   else if (!is_loopback(config.address) && config.tokens.empty())
     options.exit = wrong("--listen " + config.address + " can be reached by others: give --tokens FILE");
-  else if (!fs::exists(config.program))
-    options.exit = wrong("there is no " + config.program.string() + "; give --talus");
+  else if (std::error_code error; !fs::exists(config.program, error))
+    options.exit = wrong((error ? "cannot look at " : "there is no ") + config.program.string() +
+                         (error ? ": " + error.message() : "") + "; give --talus");
   if (!options.exit && place == "slurm") {
     try {
       config.slurm = slurm.empty() ? executor::SlurmConfig{} : executor::read_slurm_config(slurm);

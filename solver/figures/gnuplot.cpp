@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "math/error.hpp"
 
@@ -60,6 +61,16 @@ class FileActions {
   posix_spawn_file_actions_t actions_;
 };
 
+/// Ours, but for a language whose letters are those of the scripts: gnuplot 6 warns of a degree sign in the plain C locale.
+std::vector<char*> environment_of_gnuplot() {
+  static char letters[] = "LC_ALL=C.UTF-8";
+  std::vector<char*> variables = {letters};
+  for (char** variable = environ; *variable != nullptr; ++variable)
+    if (std::strncmp(*variable, "LC_ALL=", 7) != 0) variables.push_back(*variable);
+  variables.push_back(nullptr);
+  return variables;
+}
+
 // Exit status of gnuplot as waitpid gives it.
 int spawn_gnuplot(int in, int out, int err) {
   FileActions actions;
@@ -70,7 +81,7 @@ int spawn_gnuplot(int in, int out, int err) {
   char no_start_up_file[] = "--default-settings";
   char* arguments[] = {program, no_start_up_file, nullptr};
   pid_t child = 0;
-  const int error = ::posix_spawnp(&child, program, actions.get(), nullptr, arguments, environ);
+  const int error = ::posix_spawnp(&child, program, actions.get(), nullptr, arguments, environment_of_gnuplot().data());
   if (error == ENOENT || error == EACCES) throw IoError("gnuplot not found, no figures drawn: install gnuplot-nox");
   if (error != 0) fail("cannot start gnuplot", error);
   int status = 0;
