@@ -19,13 +19,13 @@ export TALUS_CLANG
 cmake --preset dev >/dev/null
 cmake --build --preset dev
 cmake --preset tsan >/dev/null
-cmake --build --preset tsan --target test_simulation test_sph talusd test_service
+cmake --build --preset tsan --target test_simulation test_sph test_integrate talusd test_service
 cmake --preset fuzz >/dev/null
 cmake --build --preset fuzz --target fuzz_request fuzz_case
 
 status=0
 # talusd with the thread sanitizer; the runs that it starts need none.
-TALUS=$PWD/build/release/bin/talus ctest --preset tsan -R 'Determinism|RightHandSide|StoreTest|service_(Ours|Load|Crash)$' || status=1
+TALUS=$PWD/build/release/bin/talus ctest --preset tsan -R 'Determinism|RightHandSide|VectorisedFlow|Integrator|StoreTest|service_(Ours|Load|Crash)$' || status=1
 ctest --preset fuzz || status=1
 ctest --preset dev -j "$jobs" -LE 'slow|long' || status=1
 ctest --preset release -j "$jobs" || status=1
