@@ -19,6 +19,7 @@ constexpr milliseconds poll_interval{10};
 constexpr milliseconds idle_interval{500};
 constexpr milliseconds trouble_interval{1000};
 constexpr milliseconds interim_interval{2000};
+constexpr milliseconds removal_interval{5000};  ///< until what could not be removed is tried again
 constexpr std::uint64_t crowded_bytes = std::uint64_t{8} << 20;  ///< a run that cannot write then is not to blame
 
 /// Could it be? What a network file system does not let go yet is tried again, and nothing else waits for it.
@@ -98,7 +99,7 @@ void Scheduler::tick() {
   reap();
   if (Steady::now() >= next_beat_) beat();
   run_echo();
-  if (removing_ > 0) remove_dismissed();
+  if (removing_ > 0 && Steady::now() >= next_removal_) remove_dismissed();
   if (look_) {
     look_ = false;
     fill();
@@ -285,7 +286,7 @@ void Scheduler::remove_dismissed() {
     if (works || publishes)
       removing_ = 1;
     else if (store_.job(id) && !removed(entry.path()))
-      removing_ = 1;
+      removing_ = 1, next_removal_ = Steady::now() + removal_interval;
   }
 }
 

@@ -100,7 +100,7 @@ class Scheduler {
   std::map<std::int64_t, int> publish_failures_;              ///< by job
   std::set<std::string> waiting_;                             ///< jobs that say what they wait for
   std::map<std::int64_t, std::int64_t> interim_published_;    ///< by job: how many were done then
-  Steady::time_point next_beat_{}, next_interim_{}, retry_at_{};
+  Steady::time_point next_beat_{}, next_interim_{}, retry_at_{}, next_removal_{};
   bool look_ = true;          ///< the queue may hold something to do
   bool echo_waiting_ = false;
   bool told_trouble_ = false;

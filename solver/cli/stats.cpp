@@ -82,12 +82,20 @@ std::string misuse(const StatsOptions& options) {
   return {};
 }
 
+/// Tables without a directory of runs would be those of a merged study, which cannot go on.
+void write_prepared(const StudyPaths& paths, const Tables& tables) {
+  std::error_code error;
+  std::filesystem::create_directories(paths.runs(), error);
+  if (error) throw_io_error("create", paths.runs(), error.value());
+  write_tables(paths, tables.plan, tables.runs, tables.floor);
+}
+
 void publish(const StatsOptions& options, const Tables& tables, const std::string& study) {
   const StudyPaths paths{options.directories.front()};
   if (!options.out.empty())
     write_merged(options.out, tables, options.directories.front());
   else if (options.from_runs)
-    Ledger(paths, tables.plan).make_directories(), write_tables(paths, tables.plan, tables.runs, tables.floor);  // of a study that can go on
+    write_prepared(paths, tables);
   else
     write_file_atomically(paths.summary(), study);
 }

@@ -75,6 +75,27 @@ class BadDays(ServiceTest):
             self.daemon.post("/processes/echo/execution", echo, headers={"Prefer": "respond-async"}).status, 201
         )
 
+    def test_a_directory_that_cannot_be_removed_yet(self):
+        """As on a network file system. It is tried again now and then, the rest goes on, and the log is not filled."""
+        self.start()
+        job = self.daemon.submit(study(1))
+        self.daemon.wait_for(job)
+        held = self.daemon.data / "jobs" / job / "held"
+        held.write_text("")
+        done = subprocess.run(["chattr", "+i", held], capture_output=True, text=True)
+        self.addCleanup(subprocess.run, ["chattr", "-i", held], capture_output=True)
+        if done.returncode != 0:
+            self.skipTest("no chattr +i here: " + done.stderr.strip())
+        self.assertEqual(self.daemon.request("DELETE", f"/jobs/{job}").status, 200)
+        self.daemon.wait_for(self.daemon.submit(study(1)))
+        time.sleep(2)
+        self.assertIn((self.daemon.data.parent / "talusd.log").read_text().count("not_removed_yet"), (1, 2))
+        subprocess.run(["chattr", "-i", held], check=True)
+        deadline = time.monotonic() + 20
+        while held.parent.exists() and time.monotonic() < deadline:
+            time.sleep(0.1)
+        self.assertFalse(held.parent.exists())
+
     def test_gnuplot_that_is_missing_or_refused(self):
         """The answer names gnuplot and no file; what needs no picture is answered all the same."""
         programs = self.dir / "programs"

@@ -16,7 +16,9 @@ import report
 
 
 def excused(criterion, not_met):
-    return any(criterion.what.startswith(start) and criterion.value <= limit for start, limit in not_met.items())
+    """Too large, but within the limit; what is too small is never excused."""
+    high_side = criterion.low is None or criterion.value >= criterion.low
+    return high_side and any(criterion.what.startswith(start) and criterion.value <= limit for start, limit in not_met.items())
 
 
 def main(name):

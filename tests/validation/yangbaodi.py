@@ -16,7 +16,7 @@ REMARKS = ("The terrain beyond the toe was shaped so that the slide runs 140 m a
            "must. Nor does the front tell the angle well: it comes to rest on the rising ground beyond, within a few spacings of 140 m for a range of angles. What the profile did not decide is "
            "the energy line. Friction at the bed takes tan(phi) of the centre of mass's fall for each metre of its travel, and at a bend it takes more, since the bend adds to the slide's "
            "weight: a block that slides from the slide's centre and loses the factor exp(-2 tan(phi) d theta) of its energy at each bend is the lower bound. What is sheared "
-           "inside the slide takes some more; the allowance of 0.12 tan(phi) for it was set after the runs, to see that nothing changes. A twentieth more or less of yield stress should leave the band. "
+           "inside the slide takes some more; the allowance of 0.12 tan(phi) for it was set after the runs, to see that nothing changes. A twentieth more or less of yield stress leaves the band. "
            "(Above 30 deg, the slope of the last stretch below the slide, some of it stays behind, and the energy line of what is one centre of mass no more falls below tan(phi).) "
            "This case also fixes the time step, and is run at one spacing.")
 TOE, RUNOUT = 102.0, 140.0
