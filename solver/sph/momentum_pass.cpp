@@ -39,15 +39,14 @@ struct Viscous {
 };
 
 template <class Kernel, bool Quadratic>
-HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, std::size_t chunk) {
+HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Chunk clusters) {
   const D d;
   const Kernel kernel(f.fixed.quantum / k.h);
   Viscous<Quadratic> viscous(k, f.fixed.quantum);
   const V quantum = set(f.fixed.quantum), b_max = set(k.walls.b_max), zero = hn::Zero(d), volume_w = set(k.dx * k.dx);
   const V to_force = set(-sigma_h2(k) * f.fixed.quantum), gx = set(k.g.x), gy = set(k.g.y);
   const bool only_approaching = k.walls.contact == WallContact::approaching, smooth = k.walls.slip == WallSlip::free_slip;
-  const std::size_t begin = chunk * ClusterList::chunk_size, end = std::min(begin + ClusterList::chunk_size, f.soil_clusters.size() - 1);
-  for (std::size_t c = begin; c < end; ++c) {
+  for (std::size_t c = clusters.begin; c < clusters.end; ++c) {
     const std::size_t i = f.soil_clusters[c], count = f.soil_clusters[c + 1] - i;
     V X, Y, vx, vy, volume, q, rho, material, sxx, syy, sxy, p;
     hn::LoadInterleaved4(d, f.soil.motion.data() + 4 * i, X, Y, vx, vy);
@@ -99,10 +98,10 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, std::size_t c
   }
 }
 
-void momentum_dispatch(PackedFlow& f, const FlowConstants& k, std::size_t chunk) {
+void momentum_dispatch(PackedFlow& f, const FlowConstants& k, Chunk clusters) {
   with_kernel(k, [&]<class Kernel>(Kernel*) {
-    if (k.numerics.beta > 0.0) momentum_loop<Kernel, true>(f, k, chunk);
-    else momentum_loop<Kernel, false>(f, k, chunk);
+    if (k.numerics.beta > 0.0) momentum_loop<Kernel, true>(f, k, clusters);
+    else momentum_loop<Kernel, false>(f, k, clusters);
   });
 }
 
@@ -114,7 +113,7 @@ namespace talus {
 
 HWY_EXPORT(momentum_dispatch);
 
-void momentum_pass(PackedFlow& f, const FlowConstants& k, std::size_t c) { HWY_DYNAMIC_DISPATCH(momentum_dispatch)(f, k, c); }
+void momentum_pass(PackedFlow& f, const FlowConstants& k, Chunk clusters) { HWY_DYNAMIC_DISPATCH(momentum_dispatch)(f, k, clusters); }
 
 }  // namespace talus
 #endif

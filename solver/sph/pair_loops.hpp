@@ -45,13 +45,13 @@ void pack_walls(PackedFlow& f, const WallParticles& walls);
 void list_neighbours(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets, const CellList& cells,
                      std::span<const float> sources, double distance, double moved, std::uint32_t nowhere, std::size_t c, ClusterList& list);
 
-/// First pass over chunk c of the soil's clusters: velocity gradient, density rate, stress ([Z20] Eqs. 1-10), with the elastic
+/// First pass over some of the soil's clusters: velocity gradient, density rate, stress ([Z20] Eqs. 1-10), with the elastic
 /// stress as it will be after `ahead` [s]. `keep`: what returning it to the yield surface takes off is taken off the soil's.
-void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t c);
+void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters);
 /// Stress of chunk c of the walls' clusters, extrapolated from the soil.
 void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t c);
-/// Second pass over chunk c of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included.
-void momentum_pass(PackedFlow& f, const FlowConstants& k, std::size_t c);
+/// Second pass over some of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included.
+void momentum_pass(PackedFlow& f, const FlowConstants& k, Chunk clusters);
 
 /// What a step made of the particles.
 struct Motion {

@@ -18,15 +18,14 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
 template <class Kernel, bool Diffuse, bool OneMaterial>
-HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t chunk) {
+HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
   const D d;
   const Kernel kernel(f.fixed.quantum / k.h);
   const V quantum = set(f.fixed.quantum), b_max = set(k.walls.b_max), zero = hn::Zero(d);
   const V volume_w = set(k.dx * k.dx), support2 = set(4.0 * k.h * k.h / (f.fixed.quantum * f.fixed.quantum));
   const V to_L = set(-sigma_h2(k) * f.fixed.quantum), to_diffusion = set(2.0 * k.numerics.delta * k.h * k.c_s * sigma_h2(k));
   const bool only_approaching = k.walls.contact == WallContact::approaching, smooth = k.walls.slip == WallSlip::free_slip;
-  const std::size_t begin = chunk * ClusterList::chunk_size, end = std::min(begin + ClusterList::chunk_size, f.soil_clusters.size() - 1);
-  for (std::size_t c = begin; c < end; ++c) {
+  for (std::size_t c = clusters.begin; c < clusters.end; ++c) {
     const std::size_t i = f.soil_clusters[c], count = f.soil_clusters[c + 1] - i;
     V X, Y, vx, vy, volume, q, rho, material;
     hn::LoadInterleaved4(d, f.soil.motion.data() + 4 * i, X, Y, vx, vy);
@@ -78,11 +77,11 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
   }
 }
 
-void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t chunk) {
+void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
   with_kernel(k, [&]<class Kernel>(Kernel*) {
-    if (k.numerics.density_filter != DensityFilter::delta_sph) stress_loop<Kernel, false, true>(f, k, soil, ahead, keep, chunk);
-    else if (k.laws.size() == 1) stress_loop<Kernel, true, true>(f, k, soil, ahead, keep, chunk);
-    else stress_loop<Kernel, true, false>(f, k, soil, ahead, keep, chunk);
+    if (k.numerics.density_filter != DensityFilter::delta_sph) stress_loop<Kernel, false, true>(f, k, soil, ahead, keep, clusters);
+    else if (k.laws.size() == 1) stress_loop<Kernel, true, true>(f, k, soil, ahead, keep, clusters);
+    else stress_loop<Kernel, true, false>(f, k, soil, ahead, keep, clusters);
   });
 }
 
@@ -94,8 +93,8 @@ namespace talus {
 
 HWY_EXPORT(stress_dispatch);
 
-void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t c) {
-  HWY_DYNAMIC_DISPATCH(stress_dispatch)(f, k, soil, ahead, keep, c);
+void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
+  HWY_DYNAMIC_DISPATCH(stress_dispatch)(f, k, soil, ahead, keep, clusters);
 }
 
 }  // namespace talus

@@ -107,29 +107,38 @@ void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const C
   }
 }
 
-/// Consecutive chunks of the soil's clusters for each thread, with as many neighbours as those of the others.
+/// Consecutive clusters of the soil for each thread, with as many neighbours as those of the others.
 void VectorisedFlow::share_out() {
   const auto threads = static_cast<std::size_t>(omp_get_max_threads());
+  const std::size_t clusters = flow_.soil_clusters.size() - 1;
   const auto border = [&](std::size_t t) {
     const auto work = work_.back() * t / threads;
-    return static_cast<std::size_t>(std::lower_bound(work_.begin(), work_.end(), work) - work_.begin());
+    const auto chunk = static_cast<std::size_t>(std::upper_bound(work_.begin(), work_.end(), work) - work_.begin()) - 1;
+    if (chunk + 1 == work_.size()) return clusters;
+    const std::size_t within = ClusterList::chunk_size * (work - work_[chunk]) / (work_[chunk + 1] - work_[chunk]);
+    return std::min(ClusterList::chunk_size * chunk + within, clusters);
   };
   shares_.resize(threads);
   for (std::size_t t = 0; t < threads; ++t) shares_[t] = {.begin = border(t), .end = border(t + 1), .stress = border(t), .momentum = border(t)};
 }
 
-/// Calls f(chunk) for the chunks of the calling thread's share, then for what the others have left of theirs: a thread that the
-/// machine holds up does not hold up the rest. Makes the share of the other pass whole again, which a barrier must part from this one.
-/// Inside a parallel region.
+/// Calls f(clusters) for those of the calling thread's share, then for what the others have left of theirs: a thread that the
+/// machine holds up does not hold up the rest. Many clusters at a time, few towards the end, so that all end together.
+/// Makes the share of the other pass whole again, which a barrier must part from this one. Inside a parallel region.
 template <class F>
-void VectorisedFlow::for_chunks(std::size_t Share::* next, std::size_t Share::* other, F&& f) {
+void VectorisedFlow::for_clusters(std::size_t Share::* next, std::size_t Share::* other, F&& f) {
   const auto thread = static_cast<std::size_t>(omp_get_thread_num()), threads = static_cast<std::size_t>(omp_get_num_threads());
   // There may be fewer threads than shares: OpenMP gives as many as it can.
   for (std::size_t t = thread; t < shares_.size(); t += threads) shares_[t].*other = shares_[t].begin;
+  constexpr std::size_t many = 32, few = 8;
   for (std::size_t t = 0; t < shares_.size(); ++t) {
     Share& share = shares_[(thread + t) % shares_.size()];
     const std::atomic_ref<std::size_t> taken(share.*next);
-    for (std::size_t c; (c = taken.fetch_add(1, std::memory_order_relaxed)) < share.end;) f(c);
+    for (std::size_t c; (c = taken.load(std::memory_order_relaxed)) < share.end;) {
+      const std::size_t some = share.end - c > 4 * many ? many : few;
+      c = taken.fetch_add(some, std::memory_order_relaxed);
+      if (c < share.end) f(Chunk{c, std::min(c + some, share.end)});
+    }
   }
 }
 
@@ -138,10 +147,7 @@ void VectorisedFlow::for_chunks(std::size_t Share::* next, std::size_t Share::* 
 template <class F>
 void VectorisedFlow::for_own(std::size_t active, F&& f) {
   const auto thread = static_cast<std::size_t>(omp_get_thread_num()), threads = static_cast<std::size_t>(omp_get_num_threads());
-  const auto place = [&](std::size_t chunk) {
-    const std::size_t cluster = std::min(chunk * ClusterList::chunk_size, flow_.soil_clusters.size() - 1);
-    return std::min<std::size_t>(flow_.soil_clusters[cluster], active);
-  };
+  const auto place = [&](std::size_t cluster) { return std::min<std::size_t>(flow_.soil_clusters[cluster], active); };
   for (std::size_t t = thread; t < shares_.size(); t += threads) f(Chunk{place(shares_[t].begin), place(shares_[t].end)});
 }
 
@@ -156,7 +162,7 @@ void VectorisedFlow::evaluate_here(Soil& soil, WallParticles& walls, double ahea
   if (pack) pack_active(soil, ahead);
 #pragma omp master
   watch.lap(times_.update);
-  for_chunks(&Share::stress, &Share::momentum, [&](std::size_t c) { stress_pass(flow_, k_, soil, ahead, keep, c); });
+  for_clusters(&Share::stress, &Share::momentum, [&](Chunk some) { stress_pass(flow_, k_, soil, ahead, keep, some); });
 #pragma omp barrier
 #pragma omp master
   watch.lap(times_.gradient);
@@ -164,7 +170,7 @@ void VectorisedFlow::evaluate_here(Soil& soil, WallParticles& walls, double ahea
   for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, k_, walls, c);
 #pragma omp master
   watch.lap(times_.walls);
-  for_chunks(&Share::momentum, &Share::stress, [&](std::size_t c) { momentum_pass(flow_, k_, c); });
+  for_clusters(&Share::momentum, &Share::stress, [&](Chunk some) { momentum_pass(flow_, k_, some); });
 #pragma omp barrier
 #pragma omp master
   watch.lap(times_.momentum);

@@ -48,13 +48,13 @@ class VectorisedFlow {
 
  private:
   void pack_active(const Soil& soil, double ahead);
-  /// Chunks up to `end` for one thread; the next ones to be taken in each pass. A line of the cache to itself.
+  /// The soil's clusters up to `end` for one thread; the next ones to be taken in each pass. A line of the cache to itself.
   struct alignas(64) Share {
     std::size_t begin, end, stress, momentum;
   };
   void share_out();
   template <class F>
-  void for_chunks(std::size_t Share::* next, std::size_t Share::* other, F&& f);
+  void for_clusters(std::size_t Share::* next, std::size_t Share::* other, F&& f);
   template <class F>
   void for_own(std::size_t active, F&& f);
   void evaluate_here(Soil& soil, WallParticles& walls, double ahead, bool keep, bool pack, Stopwatch& watch);
