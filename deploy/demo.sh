@@ -13,7 +13,7 @@ cd "$(dirname "$0")/.."
 bin=${BIN:-build/release/bin}
 if [ -z "${BIN:-}" ]; then
   deploy/install-packages.sh build
-  cmake --preset release -DTALUS_TESTS=OFF >/dev/null
+  [ -f build/release/build.ninja ] || cmake --preset release -DTALUS_TESTS=OFF >/dev/null
   cmake --build --preset release --target talus talusd
 fi
 study=("${CASE:-solver/cases/illustrative.json}"

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <optional>
+#include <string>
 
 #include "figures/gnuplot.hpp"
 #include "math/error.hpp"
@@ -28,16 +30,17 @@ TEST(Gnuplot, AnErrorCarriesItsMessage) {
 // An environment variable set for as long as the object lives.
 class Environment {
  public:
-  Environment(const char* name, const std::string& value) : name_(name), before_(std::getenv(name)) {
+  Environment(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
     ::setenv(name, value.c_str(), 1);
   }
-  ~Environment() { ::setenv(name_, before_.c_str(), 1); }
+  ~Environment() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
   Environment(const Environment&) = delete;
   Environment& operator=(const Environment&) = delete;
 
  private:
   const char* name_;
-  std::string before_;
+  std::optional<std::string> before_;
 };
 
 TEST(Gnuplot, ReadsNoStartUpFile) {
