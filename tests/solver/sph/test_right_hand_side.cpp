@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <numeric>
 #include <string>
 
+#include "closeness.hpp"
 #include "random_soil.hpp"
 
 namespace talus {
@@ -131,14 +131,6 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
   return r;
 }
 
-/// Every value within `tolerance` of the largest expected one.
-void expect_close(const std::vector<double>& actual, const std::vector<double>& expected, double tolerance, const char* what) {
-  double scale = 0.0;
-  for (const double e : expected) scale = std::max(scale, std::abs(e));
-  ASSERT_EQ(actual.size(), expected.size());
-  for (std::size_t i = 0; i < actual.size(); ++i) ASSERT_NEAR(actual[i], expected[i], tolerance * scale) << what << " of " << i;
-}
-
 struct Option {
   const char* name;
   void (*set)(FlowConstants&);
@@ -233,118 +225,6 @@ TEST(RightHandSide, FixedPointKeepsVectorisedSumsRightFarFromTheOrigin) {
   double scale = 0;
   for (const double ax : a.ax) scale = std::max(scale, std::abs(ax));
   for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(b.ax[i], a.ax[i], 2e-5 * scale);
-}
-
-/// Moves every particle by exactly `way` in some direction.
-void displace(Soil& soil, double way, unsigned seed) {
-  std::mt19937 engine(seed);
-  std::uniform_real_distribution<double> angle(0.0, 2.0 * std::numbers::pi);
-  for (std::size_t i = 0; i < soil.size(); ++i) {
-    const double a = angle(engine);
-    soil.x[i] += way * std::cos(a), soil.y[i] += way * std::sin(a);
-  }
-}
-
-TEST(VectorisedFlow, ListsReachAsFarAsParticlesMayHaveGone) {
-  // Large ways, so that a list that is too short by one of them misses neighbours of weight.
-  FlowConstants k = constants(0.1);
-  const double moved = 0.6 * k.h, way = 0.4 * k.h;
-  Soil soil = random_soil(40, 12, k.dx, 41);
-  for (double& y : soil.y) y += moved + way;  // nothing goes through the wall
-  WallParticles walls = flat_walls(40, k.dx);
-  const CellList soil_cells = sorted(soil, 2 * k.h + moved + way), wall_cells = sorted(walls, 2 * k.h);
-  displace(soil, moved, 1);
-  VectorisedFlow flow(k, soil);
-  flow.renew(soil, walls, soil_cells, wall_cells, moved, way);
-  displace(soil, way, 2);
-  flow.state_changed();
-  Soil plain = soil;
-  WallParticles plain_walls = walls;
-  RightHandSide(k).evaluate(plain, plain_walls, soil_cells, wall_cells);
-  flow.evaluate(soil, walls, 0.0, true);
-  flow.unpack(soil);
-  expect_close(soil.drho, plain.drho, 2e-6, "drho");
-  expect_close(soil.ax, plain.ax, 2e-6, "ax");
-  expect_close(walls.p, plain_walls.p, 2e-6, "wall p");
-}
-
-TEST(VectorisedFlow, EqualsThePlainLoopsAtWallsOfEveryKind) {
-  for (const auto slip : {WallSlip::no_slip, WallSlip::friction, WallSlip::free_slip})
-    for (const auto contact : {WallContact::always, WallContact::approaching})
-      for (const auto kernel : {KernelShape::cubic_spline, KernelShape::wendland_c2}) {
-        FlowConstants k = constants(0.1, {1.3, -9.81}, {{"a", 2000, 0.5, 700, 30}, {"b", 1900, 0.5, 100, 90}});
-        k.walls.slip = slip, k.walls.contact = contact, k.walls.phi = 0.1, k.numerics.kernel = kernel;
-        Soil soil = random_soil(30, 8, k.dx, 47, 2);
-        WallParticles walls = flat_walls(30, k.dx);
-        for (std::size_t w = 0; w < walls.size(); ++w) walls.nx[w] = -0.28, walls.ny[w] = 0.96;  // sloping
-        const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
-        Soil plain = soil;
-        WallParticles plain_walls = walls;
-        RightHandSide(k).evaluate(plain, plain_walls, soil_cells, wall_cells);
-        k.numerics.precision = Precision::single;
-        evaluate(k, soil, walls, soil_cells, wall_cells);
-        for_each_rate(plain, [&](const std::string& name, const auto& expected) {
-          for_each_rate(soil, [&](const std::string& other, const auto& actual) {
-            if (name == other) expect_close(actual, expected, 3e-6, name.c_str());
-          });
-        });
-        for_each_wall_real(plain_walls, [&](const std::string& name, const auto& expected) {
-          for_each_wall_real(walls, [&](const std::string& other, const auto& actual) {
-            if (name == other) expect_close(actual, expected, 2e-5, name.c_str());  // a smooth wall turns pressure into shear
-          });
-        });
-      }
-}
-
-TEST(VectorisedFlow, AWallThatSeesNextToNothingStaysFinite) {
-  // A soil particle within rounding of 2h from the wall particle below it; another one far off changes the fixed point's quantum, so that
-  // some of the many kernel values are tiny: none may give infinity.
-  FlowConstants k = constants(0.1);
-  k.numerics.precision = Precision::single, k.numerics.kernel = KernelShape::wendland_c2;
-  for (int m = 0; m < 3000; ++m)
-    for (int n = -2; n <= 2; ++n) {
-      Soil soil = random_soil(2, 1, k.dx, 5);
-      soil.x = {0.0, 3.0 + 1e-3 * m}, soil.y = {2 * k.h * (1 + 6e-8 * n) - k.dx, 1.0};
-      WallParticles walls = flat_walls(1, k.dx);
-      const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
-      evaluate(k, soil, walls, soil_cells, wall_cells);
-      for (const double p : walls.p) ASSERT_TRUE(std::isfinite(p)) << "extent " << m << ", place " << n;
-    }
-}
-
-TEST(VectorisedFlow, FollowsParticlesThatChangePlaces) {
-  FlowConstants k = constants(0.1);
-  Soil soil = random_soil(15, 12, k.dx, 43);
-  WallParticles none;
-  CellList no_cells;
-  no_cells.build({}, {}, 1.0);
-  const CellList cells = sorted(soil, 2 * k.h);
-  VectorisedFlow flow(k, soil);
-  flow.renew(soil, none, cells, no_cells, 0.0, 0.0);
-  flow.evaluate(soil, none, 0.0, true);
-  Soil before, after;
-  flow.unpack(before);
-  flow.swap(3, 100);
-  flow.unpack(after);
-  const auto expect_moved = [&](const char* name, const auto& array) {
-    for_each_real(after, [&](const std::string& other, const auto& moved) {
-      if (other != name) return;
-      EXPECT_NE(array[3], array[100]) << name;
-      EXPECT_EQ(moved[3], array[100]) << name;
-      EXPECT_EQ(moved[100], array[3]) << name;
-      EXPECT_EQ(moved[4], array[4]) << name;
-    });
-  };
-  for_each_rate(before, expect_moved), for_each_derived(before, expect_moved);
-  // Rates follow a new order as well; the derived values are written anew before anyone reads them.
-  std::vector<std::uint32_t> order(soil.size());
-  std::iota(order.rbegin(), order.rend(), 0u);
-  std::vector<double> scratch;
-  flow.permute(order, scratch);
-  Soil reversed;
-  flow.unpack(reversed);
-  EXPECT_EQ(reversed.ay[0], after.ay.back());
-  EXPECT_EQ(reversed.dtxy[5], after.dtxy[after.dtxy.size() - 6]);
 }
 
 TEST(RightHandSide, TurnsWithTheProblem) {
