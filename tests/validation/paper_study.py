@@ -366,7 +366,7 @@ def the_mean(numbers, by_sigma):
     further = " With its whole variance, uneven strength makes the slide go further on the average." if shifts["share"][1] > 0 else ""
     pair = fine_pair(numbers, "share", (1, 5))
     finer = f" At {FINE:g} m, `share` (N = {min(s['n'] for s in pair)}): {said(shift(pair))} m." if pair else ""
-    return ("\n*The mean* stays where it is in the paper (near 34.1 m). From case 1 to 5, realization by realization, it moves by " + moved + "." + further + finer)
+    return ("\n*The mean* stays near 34.1 m in the paper. Here, from case 1 to 5, realization by realization, it moves by " + moved + "." + further + finer)
 
 
 def main():
