@@ -17,7 +17,7 @@ std::vector<std::uint32_t> clusters(const CellList& cells, std::size_t lanes);
 
 /// For each cluster the places of the particles to sum over, ascending.
 struct ClusterList {
-  static constexpr std::size_t chunk_size = 32;  ///< clusters that a thread takes at a time
+  static constexpr std::size_t chunk_size = 32;  ///< clusters whose lists a thread makes at a time, one after the other in memory
   /// Each list is filled up to a multiple of it with a place where nothing is, and so many more stand behind the last.
   static constexpr std::size_t block = 2;
 

@@ -2,7 +2,6 @@
 // Small studies for tests.
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -13,20 +12,11 @@
 
 #include "study/plan.hpp"
 #include "study/record.hpp"
+#include "temporary_directory.hpp"
 
 namespace talus::fixtures {
 
-/// A directory of a test's own, removed with the object.
-struct TemporaryDirectory {
-  std::filesystem::path path;
-  TemporaryDirectory() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "talus-study-XXXXXX").string();
-    path = ::mkdtemp(pattern.data());
-  }
-  ~TemporaryDirectory() { std::filesystem::remove_all(path); }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-};
+using test::TemporaryDirectory;
 
 inline std::string content(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

@@ -10,7 +10,7 @@ namespace {
 /// The message with which reading `text` is refused.
 std::string refusal(const std::string& text) {
   const TemporaryDirectory directory;
-  const auto path = directory.path / "t.csv";
+  const auto path = directory / "t.csv";
   write(path, text);
   try {
     read_csv(path, "index");
@@ -38,7 +38,7 @@ TEST(Csv, OneLineForEachRecord) {
 
 TEST(Csv, ReadsBackExactly) {
   const TemporaryDirectory directory;
-  const auto path = directory.path / "t.csv";
+  const auto path = directory / "t.csv";
   Record r = done(3, 100.0 / 3.0);
   r.wall_clock = 1e-300;
   write(path, to_csv({r, failed(7, "a, \"b\"; c"), done(1000000, -0.125)}, "replicate"));
@@ -61,8 +61,8 @@ TEST(Csv, ReadsBackExactly) {
 
 TEST(Csv, AcceptsLineEndsOfOtherSystems) {
   const TemporaryDirectory directory;
-  write(directory.path / "t.csv", "index" + head.substr(5, head.size() - 6) + "\r\n3,failed,,,,,,,,,,,\"x\"\r\n");
-  EXPECT_EQ(read_csv(directory.path / "t.csv", "index").front().reason, "x");
+  write(directory / "t.csv", "index" + head.substr(5, head.size() - 6) + "\r\n3,failed,,,,,,,,,,,\"x\"\r\n");
+  EXPECT_EQ(read_csv(directory / "t.csv", "index").front().reason, "x");
 }
 
 TEST(Csv, NamesFileLineAndFault) {

@@ -24,8 +24,8 @@ using nlohmann::json;
 /// A study in a directory of its own; run() may be called again and again, as a person repeats a command.
 struct Study {
   TemporaryDirectory directory;
-  fs::path out = directory.path / "study";
-  fs::path diary = directory.path / "diary";
+  fs::path out = directory / "study";
+  fs::path diary = directory / "diary";
   Plan plan;
   DriverOptions options;
   std::string script;
@@ -314,9 +314,9 @@ void kill_and_finish(Study& s, int begun) {
   std::vector<std::string> command{STUDY_PROCESS, s.out.string(), std::to_string(s.plan.study.realizations), "3"};
   for (const std::string& word : s.program()) command.push_back(word);
   {
-    executor::Process study({.arguments = command}, s.directory.path / "log", s.directory.path / "log");
+    executor::Process study({.arguments = command}, s.directory / "log", s.directory / "log");
     wait_until([&] { return s.count("begin ") >= begun; });
-    ASSERT_FALSE(study.poll()) << content(s.directory.path / "log");
+    ASSERT_FALSE(study.poll()) << content(s.directory / "log");
     study.signal(SIGKILL);
     wait_until([&] { return study.poll().has_value(); });
     EXPECT_EQ(study.poll()->signal, SIGKILL);

@@ -40,7 +40,7 @@ std::string pointer_of_fault(const LoadedCase& c) {
 
 TEST(Plan, ReadsBack) {
   const TemporaryDirectory directory;
-  EXPECT_FALSE(find_plan(directory.path));
+  EXPECT_FALSE(find_plan(directory.path()));
   Plan p = plan(30);
   p.seed = 18446744073709551615ULL;
   p.study = {.realizations = 30,
@@ -51,8 +51,8 @@ TEST(Plan, ReadsBack) {
              .stop_half_width = 0.25,
              .max_failed_share = 0.2,
              .histogram_edges = {1.0, 2.5}};
-  write_plan(directory.path, p);
-  const Plan back = *find_plan(directory.path);
+  write_plan(directory.path(), p);
+  const Plan back = *find_plan(directory.path());
   EXPECT_EQ(back.title, p.title);
   EXPECT_EQ(back.case_hash, p.case_hash);
   EXPECT_EQ(back.version, p.version);
@@ -64,8 +64,8 @@ TEST(Plan, ReadsBack) {
   EXPECT_EQ(back.study.stop_half_width, 0.25);
   EXPECT_EQ(back.study.max_failed_share, 0.2);
   EXPECT_EQ(back.study.histogram_edges, (std::vector{1.0, 2.5}));
-  write(directory.path / "plan.json", "{}");
-  EXPECT_THROW(find_plan(directory.path), IoError);
+  write(directory / "plan.json", "{}");
+  EXPECT_THROW(find_plan(directory.path()), IoError);
 }
 
 TEST(Plan, OnlyTheSameStudyOrALongerOneGoesOn) {

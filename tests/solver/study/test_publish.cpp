@@ -36,23 +36,23 @@ TEST(Tables, GiveStudyJsonAgain) {
   Plan p = plan(6);
   p.study.noise_floor_replicates = 2;
   p.study.histogram_edges = {30.0, 34.0, 38.0};
-  study(d.path, p, {done(0, 100.0 / 3.0), done(1, 35.1), failed(2, "diverged: x, \"y\""), done(4, 36.7)},
+  study(d.path(), p, {done(0, 100.0 / 3.0), done(1, 35.1), failed(2, "diverged: x, \"y\""), done(4, 36.7)},
         {done(1, 33.4), done(2, 33.3)});
-  const Tables back = read_tables(d.path);
-  EXPECT_EQ(summarize(back.plan, back.runs, back.floor).dump(2) + "\n", content(d.path / "study.json"));
+  const Tables back = read_tables(d.path());
+  EXPECT_EQ(summarize(back.plan, back.runs, back.floor).dump(2) + "\n", content(d / "study.json"));
 }
 
 TEST(Tables, WhatIsNoStudyIsRefused) {
   const TemporaryDirectory d;
-  EXPECT_THROW(read_tables(d.path), IoError);
-  study(d.path, plan(3), {done(0, 1.0), done(3, 2.0)});  // index 3 of 3
-  EXPECT_THROW(read_tables(d.path), IoError);
+  EXPECT_THROW(read_tables(d.path()), IoError);
+  study(d.path(), plan(3), {done(0, 1.0), done(3, 2.0)});  // index 3 of 3
+  EXPECT_THROW(read_tables(d.path()), IoError);
 }
 
 TEST(Merge, JoinsStudiesAndKeepsGaps) {
   const TemporaryDirectory d;
-  const auto a = study(d.path / "a", plan(6), {done(0, 34.0), done(1, 35.0), failed(3, "killed")}, {done(1, 34.1)});
-  const auto b = study(d.path / "b", plan(8), {done(1, 35.0), done(3, 36.0), done(7, 37.0)}, {done(2, 34.2)});
+  const auto a = study(d / "a", plan(6), {done(0, 34.0), done(1, 35.0), failed(3, "killed")}, {done(1, 34.1)});
+  const auto b = study(d / "b", plan(8), {done(1, 35.0), done(3, 36.0), done(7, 37.0)}, {done(2, 34.2)});
   const Tables all = merge({a, b});
   ASSERT_EQ(all.runs.size(), 4u);
   EXPECT_EQ(all.runs[2].index, 3);
@@ -68,8 +68,8 @@ TEST(Merge, NamesARealizationWithTwoResults) {
   const TemporaryDirectory d;
   Record other = done(1, 35.0);
   other.digest = "ffffffffffffffff";
-  const auto a = study(d.path / "a", plan(6), {done(0, 34.0), done(1, 35.0)});
-  const auto b = study(d.path / "b", plan(6), {other});
+  const auto a = study(d / "a", plan(6), {done(0, 34.0), done(1, 35.0)});
+  const auto b = study(d / "b", plan(6), {other});
   const std::string text = refusal({a, b});
   EXPECT_NE(text.find("realization 1 has two results: the digest is 0000000000000011 in an earlier directory and "
                       "ffffffffffffffff in " +
@@ -84,8 +84,8 @@ TEST(Merge, NamesEveryDifference) {
   other.seed = 7;
   other.case_hash = "fedcba9876543210";
   other.version = "9.9.9";
-  const auto a = study(d.path / "a", plan(6), {done(0, 34.0)});
-  const auto b = study(d.path / "b", other, {done(1, 35.0)});
+  const auto a = study(d / "a", plan(6), {done(0, 34.0)});
+  const auto b = study(d / "b", other, {done(1, 35.0)});
   const std::string text = refusal({a, b});
   EXPECT_NE(text.find("the case hash is fedcba9876543210 there, not 0123456789abcdef"), std::string::npos) << text;
   EXPECT_NE(text.find("the seed is 7 there, not 42"), std::string::npos) << text;
@@ -96,27 +96,27 @@ TEST(Merge, LatinHypercubesMustBeOne) {
   const TemporaryDirectory d;
   Plan six = plan(6), eight = plan(8);
   six.study.sampling = eight.study.sampling = Sampling::latin_hypercube;
-  const auto a = study(d.path / "a", six, {done(0, 34.0)});
-  const auto b = study(d.path / "b", eight, {done(1, 35.0)});
+  const auto a = study(d / "a", six, {done(0, 34.0)});
+  const auto b = study(d / "b", eight, {done(1, 35.0)});
   EXPECT_NE(refusal({a, b}).find("size of the Latin hypercube is 8 there, not 6"), std::string::npos);
-  EXPECT_EQ(refusal({a, study(d.path / "c", six, {done(1, 35.0)})}), "accepted");
+  EXPECT_EQ(refusal({a, study(d / "c", six, {done(1, 35.0)})}), "accepted");
 }
 
 TEST(Merge, WritesAStudyThatCanBeMergedAgainButNotRun) {
   const TemporaryDirectory d;
-  const auto a = study(d.path / "a", plan(3), {done(0, 34.0)});
-  const auto b = study(d.path / "b", plan(3), {done(1, 35.0)});
+  const auto a = study(d / "a", plan(3), {done(0, 34.0)});
+  const auto b = study(d / "b", plan(3), {done(1, 35.0)});
   write(a / "case.resolved.json", "{}");
-  for (int again = 0; again < 2; ++again) write_merged(d.path / "all", merge({a, b}), a);
-  EXPECT_EQ(read_tables(d.path / "all").runs.size(), 2u);
-  EXPECT_EQ(content(d.path / "all" / "case.resolved.json"), "{}");
-  EXPECT_THROW(run_study(plan(3), {}, d.path / "all", {}), IoError);
+  for (int again = 0; again < 2; ++again) write_merged(d / "all", merge({a, b}), a);
+  EXPECT_EQ(read_tables(d / "all").runs.size(), 2u);
+  EXPECT_EQ(content(d / "all" / "case.resolved.json"), "{}");
+  EXPECT_THROW(run_study(plan(3), {}, d / "all", {}), IoError);
   fs::create_directories(b / "runs");
   EXPECT_THROW(write_merged(b, merge({a, b}), a), IoError);
-  fs::create_directories(d.path / "foreign");
-  write(d.path / "foreign" / "thesis.tex", "x");
-  EXPECT_THROW(write_merged(d.path / "foreign", merge({a, b}), a), IoError);
-  EXPECT_FALSE(fs::exists(d.path / "foreign" / "study.json"));
+  fs::create_directories(d / "foreign");
+  write(d / "foreign" / "thesis.tex", "x");
+  EXPECT_THROW(write_merged(d / "foreign", merge({a, b}), a), IoError);
+  EXPECT_FALSE(fs::exists(d / "foreign" / "study.json"));
 }
 
 TEST(Counted, EndsWhereTheStudyStopped) {
