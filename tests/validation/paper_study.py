@@ -359,7 +359,7 @@ def fourth_conclusion(numbers, by_length):
     return text + (f"At {numbers['spacing_m']:g} m: `share` {growth(ends['share'])}; `sorted` {growth(ends['sorted'])}, where the root of the variance captured grows {rooted:.2f} times. Five modes carry little but "
                    "the mean over areas, and exaggerate the growth of the fronts' spread; the centre of mass feels little else than that mean. "
                    f"At {numbers['spacing_m']:g} m ell/dx is 0.5 to 2.5: a particle has the whole variance of a point where it should have that of its own area's mean, so that with `share` the fronts' spread may be "
-                   "too large at short ell. Whether the spread widens above ell/dx = 3 as such was not looked at.")
+                   "too large at short ell (`random_field.cell_average`, which would give it that mean, is off here as in the paper). Whether the spread widens above ell/dx = 3 as such was not looked at.")
 
 
 def the_mean(numbers, by_sigma):
