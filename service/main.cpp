@@ -72,8 +72,8 @@ int serve(Config config) {
   const Tokens tokens = config.tokens.empty() ? Tokens() : Tokens(config.tokens);
   const DataDirectory data{config.data};
   for (const auto& directory : {data.root, data.jobs(), data.scratch()}) std::filesystem::create_directories(directory);
-  const Descriptor lock = wait_for_lock(data.lock(), false, std::chrono::seconds(1),
-                                        "another talusd is at work in " + data.root.string());
+  const Descriptor lock =
+      wait_for_lock(data.lock(), false, std::chrono::seconds(1), "another talusd is at work in " + data.root.string());
   // When talusd was killed its workers die with it, but not at once; two of them in one directory would spoil it.
   const Descriptor workers_lock =
       wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
@@ -84,8 +84,10 @@ int serve(Config config) {
   Scheduler scheduler(config, store, changes);
   Jobs jobs(config, store, scheduler, changes);
   std::atomic<bool> stopping{false};
-  Service service{.config = config, .store = store, .jobs = jobs, .scheduler = scheduler, .changes = changes,
-                  .stopping = [&] { return stopping.load(); }};
+  Service service{
+      .config = config, .store = store, .jobs = jobs, .scheduler = scheduler, .changes = changes, .stopping = [&] {
+        return stopping.load();
+      }};
   Router router;
   add_discovery_routes(router);
   add_execution_routes(router, service);

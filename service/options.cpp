@@ -122,8 +122,10 @@ Options read_options(int argc, char** argv) {
   config.body_bytes = static_cast<std::size_t>(body_mib * 1048576.0);
   config.quotas.disk_bytes = static_cast<std::uint64_t>(min_disk_mib * 1048576.0);
   config.memory_bytes = memory_mib < 0 ? 1 : static_cast<std::uint64_t>(memory_mib * 1048576.0);
-  if (config.data.empty()) options.exit = wrong("--data DIR is needed");
-  else if (const std::string why = split_listen(listen, config); !why.empty()) options.exit = wrong("--listen " + why);
+  if (config.data.empty())
+    options.exit = wrong("--data DIR is needed");
+  else if (const std::string why = split_listen(listen, config); !why.empty())
+    options.exit = wrong("--listen " + why);
   else if (!is_loopback(config.address) && config.tokens.empty())
     options.exit = wrong("--listen " + config.address + " can be reached by others: give --tokens FILE");
   else if (std::error_code error; !fs::exists(config.program, error))

@@ -62,9 +62,9 @@ void tag(Answer& answer, const Incoming& request) {
 /// What a client calls its request, if it is fit for a log; else a new one.
 std::string request_id(const Incoming& request) {
   const std::string given = request.header("x-request-id");
-  const bool fit = !given.empty() && given.size() <= 64 &&
-                   given.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") ==
-                       std::string::npos;
+  const bool fit =
+      !given.empty() && given.size() <= 64 &&
+      given.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") == std::string::npos;
   return fit ? given : random_hex(8);
 }
 

@@ -44,8 +44,8 @@ std::string one_of(const Json& v) {
 }
 
 const std::map<std::string, Test>& tests() {
-  static const std::map<std::string, Test> all = {{"s", text},     {"pause", pause}, {"a", integers}, {"b", box},
-                                                  {"o", object},   {"m", text},      {"x", one_of}};
+  static const std::map<std::string, Test> all = {{"s", text},   {"pause", pause}, {"a", integers}, {"b", box},
+                                                  {"o", object}, {"m", text},      {"x", one_of}};
   return all;
 }
 

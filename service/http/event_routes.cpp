@@ -10,10 +10,10 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-constexpr std::int64_t longest_wait = 60;             ///< of a long poll [s]
-constexpr std::chrono::minutes longest_stream{60};    ///< then the client reconnects by itself
-constexpr std::chrono::milliseconds quiet{3000};       ///< then a comment shows whether the client is there
-constexpr std::chrono::milliseconds pace{200};        ///< at most so often
+constexpr std::int64_t longest_wait = 60;           ///< of a long poll [s]
+constexpr std::chrono::minutes longest_stream{60};  ///< then the client reconnects by itself
+constexpr std::chrono::milliseconds quiet{3000};    ///< then a comment shows whether the client is there
+constexpr std::chrono::milliseconds pace{200};      ///< at most so often
 
 /// A place among the requests that wait.
 class Place {

@@ -10,8 +10,8 @@ namespace {
 
 /// The headers that a handler looks at, and how often each may stand.
 constexpr std::array<std::string_view, 10> handed_on{
-    "host",          "accept", "authorization", "prefer",            "idempotency-key",
-    "if-none-match", "origin", "last-event-id", "x-forwarded-proto", "x-request-id"};
+    "host",   "accept",        "authorization",     "prefer",      "idempotency-key", "if-none-match",
+    "origin", "last-event-id", "x-forwarded-proto", "x-request-id"};
 
 std::string lower(std::string_view text) {
   std::string out(text);
@@ -104,8 +104,7 @@ std::optional<Head> split(std::string_view text, const GuardLimits& limits, std:
     const std::string_view value = trimmed(line.substr(colon + 1));
     if (!is_value(value)) return refused(400, "a header value holds control characters");
     lines.push_back({lower(line.substr(0, colon)), value});
-    if (lines.size() > limits.headers)
-      return refused(431, "more than " + std::to_string(limits.headers) + " headers");
+    if (lines.size() > limits.headers) return refused(431, "more than " + std::to_string(limits.headers) + " headers");
   }
   return std::nullopt;
 }

@@ -24,10 +24,10 @@ struct GuardLimits {
 
 /// A head that has been judged.
 struct Head {
-  int status = 0;           ///< 0: good; else the status to refuse with
-  std::string why = {};     ///< one line
+  int status = 0;        ///< 0: good; else the status to refuse with
+  std::string why = {};  ///< one line
   std::string method = {};
-  std::size_t body = 0;     ///< Content-Length
+  std::size_t body = 0;  ///< Content-Length
   bool keep_alive = true;
   bool expects_continue = false;
   std::string rewritten = {};  ///< for the library, with the empty line

@@ -51,8 +51,6 @@ struct Exchange {
   std::string base = {};  ///< "http://127.0.0.1:8080": before the path of absolute links
 };
 
-inline Answer json_answer(const Json& body, int status = 200) {
-  return {.status = status, .body = dump(body) + "\n"};
-}
+inline Answer json_answer(const Json& body, int status = 200) { return {.status = status, .body = dump(body) + "\n"}; }
 
 }  // namespace talus::service

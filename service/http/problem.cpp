@@ -116,10 +116,14 @@ Answer problem(int status, const std::string& accept) {
 
 const char* status_text(int status) {
   switch (status) {
-    case 408: return "Request timeout";
-    case 417: return "Expectation failed";
-    case 505: return "HTTP version not supported";
-    default: break;
+    case 408:
+      return "Request timeout";
+    case 417:
+      return "Expectation failed";
+    case 505:
+      return "HTTP version not supported";
+    default:
+      break;
   }
   for (const Row& row : table)
     if (row.status == status) return row.title;

@@ -84,7 +84,8 @@ void fill_stream(httplib::Response& response, const Answer& answer, bool chunked
     sink.done();
   };
   if (chunked) {
-    response.set_chunked_content_provider(answer.type, [pour](size_t, httplib::DataSink& sink) { return pour(sink), true; });
+    response.set_chunked_content_provider(answer.type,
+                                          [pour](size_t, httplib::DataSink& sink) { return pour(sink), true; });
     return;
   }
   response.set_header("Connection", "close");

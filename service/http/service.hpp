@@ -21,13 +21,13 @@ struct Service {
   std::atomic<std::int64_t> requests{0}, failures{0};  ///< answered at all; with 5xx
 };
 
-void add_discovery_routes(Router& router);                     ///< /, /conformance, /api, /processes
-void add_execution_routes(Router& router, Service& service);   ///< /processes/{}/execution
-void add_job_routes(Router& router, Service& service);         ///< /jobs, /jobs/{}, /jobs/{}/results
-void add_realization_routes(Router& router, Service& service); ///< histogram, realizations, retry, extend
-void add_event_routes(Router& router, Service& service);       ///< /jobs/{}/events
-void add_operation_routes(Router& router, Service& service);   ///< /healthz, /readyz, /metrics
-void add_umbridge_routes(Router& router, Service& service);    ///< /Info, /Evaluate, ...
+void add_discovery_routes(Router& router);                      ///< /, /conformance, /api, /processes
+void add_execution_routes(Router& router, Service& service);    ///< /processes/{}/execution
+void add_job_routes(Router& router, Service& service);          ///< /jobs, /jobs/{}, /jobs/{}/results
+void add_realization_routes(Router& router, Service& service);  ///< histogram, realizations, retry, extend
+void add_event_routes(Router& router, Service& service);        ///< /jobs/{}/events
+void add_operation_routes(Router& router, Service& service);    ///< /healthz, /readyz, /metrics
+void add_umbridge_routes(Router& router, Service& service);     ///< /Info, /Evaluate, ...
 
 /// The whole way of a request: token, route, handler, problem, ETag, log line.
 Answer answer(const Incoming& request, const Router& router, Service& service, const Tokens& tokens);

@@ -35,9 +35,14 @@ Json links(const Job& job, const Exchange& exchange) {
 }  // namespace
 
 Json status_info(const Job& job, const Exchange& exchange) {
-  Json info = {{"jobID", job.id},        {"processID", job.process},           {"type", "process"},
-               {"status", word(job.state)}, {"message", message(job)},           {"created", utc_text(job.created)},
-               {"updated", utc_text(job.updated)}, {"progress", progress(job)}};
+  Json info = {{"jobID", job.id},
+               {"processID", job.process},
+               {"type", "process"},
+               {"status", word(job.state)},
+               {"message", message(job)},
+               {"created", utc_text(job.created)},
+               {"updated", utc_text(job.updated)},
+               {"progress", progress(job)}};
   if (job.started) info["started"] = utc_text(*job.started);
   if (!ended(job.state) && !job.message.empty()) info["waits"] = job.message;
   if (job.finished) info["finished"] = utc_text(*job.finished);

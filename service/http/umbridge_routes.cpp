@@ -23,13 +23,11 @@ struct Parameter {
   const char* name;
   const char* pointer;
 };
-constexpr Parameter parameters[] = {{"particle_spacing_m", "/particle_spacing_m"},
-                                    {"end_s", "/time/end_s"},
-                                    {"density_kg_m3", "/material/density_kg_m3"},
-                                    {"cohesion_Pa", "/material/cohesion_Pa"},
-                                    {"viscosity_Pa_s", "/material/viscosity_Pa_s"},
-                                    {"log_mean", "/random_field/log_mean"},
-                                    {"log_stdev", "/random_field/log_stdev"}};
+constexpr Parameter parameters[] = {
+    {"particle_spacing_m", "/particle_spacing_m"},  {"end_s", "/time/end_s"},
+    {"density_kg_m3", "/material/density_kg_m3"},   {"cohesion_Pa", "/material/cohesion_Pa"},
+    {"viscosity_Pa_s", "/material/viscosity_Pa_s"}, {"log_mean", "/random_field/log_mean"},
+    {"log_stdev", "/random_field/log_stdev"}};
 
 struct ProtocolError {
   const char* type;
@@ -170,9 +168,8 @@ void add_umbridge_routes(Router& router, Service& service) {
   post("/OutputSizes", Role::read, [](const Json&, const Json&) -> Json {
     return {{"outputSizes", {measure_names.size()}}};
   });
-  post("/Evaluate", Role::submit, [&service, terms](const Json& body, const Json& document) {
-    return evaluate(body, document, service, *terms);
-  });
+  post("/Evaluate", Role::submit,
+       [&service, terms](const Json& body, const Json& document) { return evaluate(body, document, service, *terms); });
   for (const char* path : {"/Gradient", "/ApplyJacobian", "/ApplyHessian"})
     post(path, Role::read, [path](const Json&, const Json&) -> Json {
       throw ProtocolError{"UnsupportedFeature", std::string(path + 1) + " is not supported by this model"};

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "executor/process.hpp"
 #include "jobs/config.hpp"
 #include "jobs/study_directory.hpp"
-#include "executor/process.hpp"
 
 namespace talus::service {
 

@@ -13,28 +13,28 @@ namespace talus::service {
 
 /// What a job may ask for; refused with the numbers when it asks for more.
 struct Quotas {
-  double particles = 2e6;       ///< soil and wall
-  double steps = 1e7;           ///< of one realization
+  double particles = 2e6;  ///< soil and wall
+  double steps = 1e7;      ///< of one realization
   std::int64_t realizations = 100'000;
-  double core_hours = 10'000;   ///< estimated, of a whole job
-  std::int64_t open_jobs = 1000;         ///< accepted and running, of all subjects
-  std::int64_t open_jobs_of_one = 200;   ///< of one subject
+  double core_hours = 10'000;                         ///< estimated, of a whole job
+  std::int64_t open_jobs = 1000;                      ///< accepted and running, of all subjects
+  std::int64_t open_jobs_of_one = 200;                ///< of one subject
   std::uint64_t disk_bytes = std::uint64_t{1} << 30;  ///< that must stay free
 };
 
 struct Config {
-  std::filesystem::path data;      ///< everything we keep
-  std::filesystem::path program;   ///< talus
-  std::filesystem::path models;    ///< cases served over UM-Bridge; empty: none
-  std::filesystem::path tokens;    ///< empty: no tokens, loopback only
+  std::filesystem::path data;     ///< everything we keep
+  std::filesystem::path program;  ///< talus
+  std::filesystem::path models;   ///< cases served over UM-Bridge; empty: none
+  std::filesystem::path tokens;   ///< empty: no tokens, loopback only
   std::string address = "127.0.0.1";
-  int port = 8080;                 ///< 0: any free one
-  std::string public_url;          ///< of absolute links; empty: from the Host header
+  int port = 8080;                             ///< 0: any free one
+  std::string public_url;                      ///< of absolute links; empty: from the Host header
   std::optional<executor::SlurmConfig> slurm;  ///< unset: runs are processes of this machine
-  int workers = 1;                 ///< runs at a time on this machine
-  int threads = 1;                 ///< of each run
-  int attempts = 5;                ///< crashes of a run before it counts as failed
-  int niceness = 5;                ///< of runs
+  int workers = 1;                             ///< runs at a time on this machine
+  int threads = 1;                             ///< of each run
+  int attempts = 5;                            ///< crashes of a run before it counts as failed
+  int niceness = 5;                            ///< of runs
   std::chrono::seconds lease{30};
   std::chrono::seconds time_limit{6 * 3600};  ///< of one run
   std::chrono::seconds grace{30};             ///< for workers to checkpoint when talusd is asked to stop
@@ -42,7 +42,7 @@ struct Config {
   std::uint64_t file_bytes = std::uint64_t{4} << 30;
   int http_threads = 256;
   std::size_t body_bytes = std::size_t{4} << 20;
-  int streams = 64;                           ///< event streams and long polls at a time
+  int streams = 64;                                 ///< event streams and long polls at a time
   std::chrono::milliseconds request_limit{15'000};  ///< for a client to send its request
   Quotas quotas;
 };

@@ -87,8 +87,8 @@ StudyInputs read_study_inputs(const Json& inputs) {
   Checker check;
   StudyInputs study;
   for (const auto& [key, value] : inputs.items()) {
-    static constexpr const char* known[] = {"case", "realizations", "seed", "noise_floor_replicates",
-                                            "max_failed_share", "histogram_edges_m", "quantity"};
+    static constexpr const char* known[] = {
+        "case", "realizations", "seed", "noise_floor_replicates", "max_failed_share", "histogram_edges_m", "quantity"};
     if (std::find(std::begin(known), std::end(known), key) == std::end(known))
       check.fault("/inputs" + pointer_token(key), "is not an input of this process");
   }
@@ -114,8 +114,10 @@ StudyInputs read_study_inputs(const Json& inputs) {
   }
   if (inputs.contains("quantity")) {
     const Json quantity = unqualified(inputs.at("quantity"), "/inputs/quantity", check);
-    if (!quantity.is_string()) check.fault("/inputs/quantity", "must be a string");
-    else study.quantity = quantity.get<std::string>();
+    if (!quantity.is_string())
+      check.fault("/inputs/quantity", "must be a string");
+    else
+      study.quantity = quantity.get<std::string>();
   }
   check.finish(Reason::bad_request, "the inputs are not right");
   quantity_index(study.quantity, "/inputs/quantity");

@@ -12,7 +12,7 @@ namespace talus::service {
 
 /// The inputs of `influence-zone`.
 struct StudyInputs {
-  Json document;                            ///< the case, with the options put into its /study
+  Json document;  ///< the case, with the options put into its /study
   std::int64_t realizations = 0;
   std::optional<std::int64_t> seed;
   std::string quantity = "influence_zone_m";

@@ -92,7 +92,8 @@ Outcome Jobs::run(const Command& command, std::chrono::milliseconds limit, bool 
   const bool cut_short = outcome.out.empty() ? false : outcome.out.back() != '\n';
   if (!outcome.end.signal && (outcome.end.exit_code == io_exit || cut_short)) {
     log_error("talus_cannot_write", {{"said", outcome.err}});
-    if (disk_left(config_.data) < crowded_bytes) throw Refusal(Reason::disk_full, "no file can be written for want of room");
+    if (disk_left(config_.data) < crowded_bytes)
+      throw Refusal(Reason::disk_full, "no file can be written for want of room");
     throw Refusal(Reason::unavailable, unusable(outcome.err));
   }
   return outcome;

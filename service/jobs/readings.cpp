@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr milliseconds behind{1000};  ///< that the histogram of a running job may be
+constexpr milliseconds behind{1000};       ///< that the histogram of a running job may be
 constexpr std::size_t profiles_kept = 16;  ///< of a job
 constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
@@ -36,9 +36,8 @@ void prune(const fs::path& directory, std::size_t keep) {
 /// Leaves out what has no value: `talus` says null.
 void drop_nulls(Json& object) {
   const auto has_null = [](const Json& value) {
-    return value.is_null() || (value.is_array() && std::any_of(value.begin(), value.end(), [](const Json& item) {
-                                 return item.is_null();
-                               }));
+    return value.is_null() || (value.is_array() && std::any_of(value.begin(), value.end(),
+                                                               [](const Json& item) { return item.is_null(); }));
   };
   for (auto at = object.begin(); at != object.end();) at = has_null(*at) ? object.erase(at) : std::next(at);
 }
@@ -58,8 +57,8 @@ struct Scratch {
 }  // namespace
 
 Json Jobs::distribution(const Job& job, int quantity, std::optional<int> bins, const std::vector<double>& edges) {
-  const std::string key = job.id + "/" + std::to_string(quantity) + "/" + std::to_string(bins.value_or(0)) + "/" +
-                          Json(edges).dump();
+  const std::string key =
+      job.id + "/" + std::to_string(quantity) + "/" + std::to_string(bins.value_or(0)) + "/" + Json(edges).dump();
   return distributions_.get(key, job.version, ended(job.state) ? milliseconds(0) : behind, [&] {
     const Outcome outcome = run(commands_.distribution({data_.job(job.id)}, quantity, bins, edges), seconds(60));
     if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the histogram");

@@ -19,7 +19,7 @@ constexpr milliseconds poll_interval{10};
 constexpr milliseconds idle_interval{500};
 constexpr milliseconds trouble_interval{1000};
 constexpr milliseconds interim_interval{2000};
-constexpr milliseconds removal_interval{5000};  ///< until what could not be removed is tried again
+constexpr milliseconds removal_interval{5000};                   ///< until what could not be removed is tried again
 constexpr std::uint64_t crowded_bytes = std::uint64_t{8} << 20;  ///< a run that cannot write then is not to blame
 
 /// Could it be? What a network file system does not let go yet is tried again, and nothing else waits for it.

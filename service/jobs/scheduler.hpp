@@ -97,14 +97,14 @@ class Scheduler {
   std::unique_ptr<executor::Executor> executor_;
   std::map<executor::RunId, Worker> workers_;
   std::list<Publisher> publishers_;
-  std::map<std::int64_t, int> publish_failures_;              ///< by job
-  std::set<std::string> waiting_;                             ///< jobs that say what they wait for
-  std::map<std::int64_t, std::int64_t> interim_published_;    ///< by job: how many were done then
+  std::map<std::int64_t, int> publish_failures_;            ///< by job
+  std::set<std::string> waiting_;                           ///< jobs that say what they wait for
+  std::map<std::int64_t, std::int64_t> interim_published_;  ///< by job: how many were done then
   Steady::time_point next_beat_{}, next_interim_{}, retry_at_{}, next_removal_{};
-  bool look_ = true;          ///< the queue may hold something to do
+  bool look_ = true;  ///< the queue may hold something to do
   bool echo_waiting_ = false;
   bool told_trouble_ = false;
-  int removing_ = 1;          ///< look for directories of dismissed jobs
+  int removing_ = 1;  ///< look for directories of dismissed jobs
 
   std::mutex mutex_;
   std::condition_variable wake_;

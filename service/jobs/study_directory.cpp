@@ -53,14 +53,13 @@ std::optional<RunResult> read_result(const fs::path& file, const RunKey& run, st
 
 void write_failure(const StudyDirectory& study, const RunKey& run, const RunFailure& failure, std::int64_t attempts,
                    const std::string& rerun) {
-  const Json json = {
-      {"job", (run.floor ? "noise-floor replicate " : "realization ") + std::to_string(run.index)},
-      {"reason", failure.reason},
-      {"exit_code", failure.exit_code ? Json(*failure.exit_code) : Json()},
-      {"signal", failure.signal ? Json(*failure.signal) : Json()},
-      {"attempts", attempts},
-      {"log_tail", failure.log_tail},
-      {"rerun", rerun}};
+  const Json json = {{"job", (run.floor ? "noise-floor replicate " : "realization ") + std::to_string(run.index)},
+                     {"reason", failure.reason},
+                     {"exit_code", failure.exit_code ? Json(*failure.exit_code) : Json()},
+                     {"signal", failure.signal ? Json(*failure.signal) : Json()},
+                     {"attempts", attempts},
+                     {"log_tail", failure.log_tail},
+                     {"rerun", rerun}};
   write_file(study.failure(run), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

@@ -43,9 +43,9 @@ void Database::migrate() {
   write([&](SQLite::Database& db) {
     const int found = db.execAndGet("PRAGMA user_version").getInt();
     if (found > known)
-      throw StorageError(StorageError::Kind::other,
-                         path_.string() + " is of version " + std::to_string(found) + ", which is newer than " +
-                             std::to_string(known) + "; use the newer talusd");
+      throw StorageError(StorageError::Kind::other, path_.string() + " is of version " + std::to_string(found) +
+                                                        ", which is newer than " + std::to_string(known) +
+                                                        "; use the newer talusd");
     for (int i = found; i < known; ++i) db.exec(migrations[i]);
     if (found < known) db.exec("PRAGMA user_version = " + std::to_string(known));
   });

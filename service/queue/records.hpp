@@ -100,7 +100,7 @@ struct JobFilter {
   std::vector<std::string> processes = {};
   std::optional<Milliseconds> created_from = {}, created_to = {};
   std::optional<Milliseconds> least_duration = {}, most_duration = {};  ///< from started to finished, or to now
-  std::optional<std::int64_t> before = {};  ///< Job::number of the last one seen
+  std::optional<std::int64_t> before = {};                              ///< Job::number of the last one seen
   int limit = 100;
 };
 

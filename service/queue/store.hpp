@@ -86,7 +86,6 @@ class Store {
   std::optional<Run> run(const RunKey& key);
 
  private:
-
   Database db_;
   Clock clock_;
 };

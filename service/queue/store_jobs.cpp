@@ -127,12 +127,12 @@ std::vector<Job> Store::jobs(const JobFilter& filter) {
   if (!filter.states.empty()) where += " AND state IN (" + placeholders(filter.states.size()) + ")";
   if (!filter.processes.empty()) where += " AND process IN (" + placeholders(filter.processes.size()) + ")";
   return db_.read([&](SQLite::Database& db) {
-    Statement query(db, std::string("SELECT ") + job_columns + " FROM jobs WHERE " + where +
-                            " ORDER BY number DESC LIMIT ?");
+    Statement query(
+        db, std::string("SELECT ") + job_columns + " FROM jobs WHERE " + where + " ORDER BY number DESC LIMIT ?");
     int i = 1;
     if (filter.subject) query.bind(i++, *filter.subject);
-    for (const auto& bound : {filter.before, filter.created_from, filter.created_to, filter.least_duration,
-                              filter.most_duration})
+    for (const auto& bound :
+         {filter.before, filter.created_from, filter.created_to, filter.least_duration, filter.most_duration})
       if (bound) query.bind(i++, *bound);
     for (const JobState state : filter.states) query.bind(i++, word(state));
     for (const std::string& process : filter.processes) query.bind(i++, process);
@@ -187,7 +187,7 @@ bool Store::finish(std::int64_t job, JobState state, const std::string& message)
   return db_.write([&](SQLite::Database& db) {
     Statement update(db,
                      "UPDATE jobs SET state = ?1, message = ?3, finished = ?2, updated = ?2, version = version + 1 "
-                            "WHERE number = ?4 AND state IN ('accepted', 'running') AND NOT EXISTS "
+                     "WHERE number = ?4 AND state IN ('accepted', 'running') AND NOT EXISTS "
                      "(SELECT 1 FROM runs WHERE job = number AND runs.state = 'queued') AND NOT EXISTS "
                      "(SELECT 1 FROM runs WHERE job = number AND runs.state = 'leased')");
     update.bind(1, word(state));

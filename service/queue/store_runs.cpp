@@ -116,11 +116,10 @@ bool Store::is_current(const Claim& claim) {
 
 bool Store::accept(const Claim& claim, const RunResult& result) {
   return db_.write([&](SQLite::Database& db) {
-    Statement update(db,
-                     std::string("UPDATE runs SET state = 'done', influence_zone_m = ?, front_connected_m = ?, "
-                                 "front_mass_99_m = ?, front_mass_999_m = ?, centre_of_mass_x_m = ?, "
-                                 "mean_friction_angle_deg = ?, steps = ?, wall_clock_s = ?, digest = ?") +
-                         current);
+    Statement update(db, std::string("UPDATE runs SET state = 'done', influence_zone_m = ?, front_connected_m = ?, "
+                                     "front_mass_99_m = ?, front_mass_999_m = ?, centre_of_mass_x_m = ?, "
+                                     "mean_friction_angle_deg = ?, steps = ?, wall_clock_s = ?, digest = ?") +
+                             current);
     int i = 1;
     for (const double measure : result.measures) update.bind(i++, measure);
     update.bind(i++, result.mean_friction_angle_deg);
@@ -167,7 +166,9 @@ std::vector<Claim> Store::requeue_all() {
                          "JOIN jobs ON job = number WHERE runs.state = 'leased'");
          query.executeStep();)
       held.push_back({{query.getColumn(0).getInt64(), query.getColumn(1).getInt() != 0, query.getColumn(2).getInt64()},
-                      query.getColumn(3).getString(), query.getColumn(4).getInt64(), query.getColumn(5).getInt64(),
+                      query.getColumn(3).getString(),
+                      query.getColumn(4).getInt64(),
+                      query.getColumn(5).getInt64(),
                       query.getColumn(6).getInt64()});
     db.exec("UPDATE runs SET state = 'queued' WHERE state = 'leased'");
     db.exec("UPDATE jobs SET message = '' WHERE state IN ('accepted', 'running')");  // what they waited for then

@@ -55,9 +55,8 @@ int Descriptor::release() { return std::exchange(fd_, -1); }
 
 void write_file(const fs::path& path, std::string_view content) {
   static std::atomic<unsigned> counter{0};
-  const fs::path temporary =
-      path.parent_path() / ("." + path.filename().string() + ".tmp-" + std::to_string(::getpid()) + "-" +
-                            std::to_string(counter++));
+  const fs::path temporary = path.parent_path() / ("." + path.filename().string() + ".tmp-" +
+                                                   std::to_string(::getpid()) + "-" + std::to_string(counter++));
   try {
     Descriptor file(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
     if (!file) throw_file_error("write", path, errno);

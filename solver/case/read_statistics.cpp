@@ -1,8 +1,8 @@
 // Random field and study: keys, units, ranges. Defaults are those of the structs.
 
-#include "case/sections.hpp"
-
 #include <cstdint>
+
+#include "case/sections.hpp"
 #include "random_field/marginals.hpp"
 
 namespace talus {

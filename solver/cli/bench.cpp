@@ -1,4 +1,5 @@
-// talus bench: how fast the solver is here, by size, threads, integrator, yield law and precision. Figures only, no verdict.
+// talus bench: how fast the solver is here, by size, threads, integrator, yield law and precision. Figures only, no
+// verdict.
 
 #include <omp.h>
 #include <sys/wait.h>
@@ -29,7 +30,8 @@ struct BenchOptions {
   std::string case_file;
   std::vector<double> sizes = {5e3, 17e3, 100e3, 1e6};
   std::vector<int> threads;
-  std::vector<std::string> integrators = {"rk2", "leapfrog"}, yields = {"elastic", "regularized"}, precisions = {"single", "double"};
+  std::vector<std::string> integrators = {"rk2", "leapfrog"}, yields = {"elastic", "regularized"},
+                           precisions = {"single", "double"};
   double seconds = 3.0, from = 0.0;
   bool json = false;
 };
@@ -107,7 +109,8 @@ double mean_neighbours(const Simulation& simulation) {
 #pragma omp parallel for reduction(+ : near)
     for (std::size_t i = 0; i < soil.n_active; ++i)
       cells.for_ranges(soil.position(i), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) near += norm2(points.position(order[k]) - soil.position(i)) < reach * reach;
+        for (std::size_t k = begin; k < end; ++k)
+          near += norm2(points.position(order[k]) - soil.position(i)) < reach * reach;
       });
     return static_cast<double>(near);
   };
@@ -161,8 +164,12 @@ Json measure(const BenchOptions& o, const Json& document, const Setting& s) {
   if (s.precision == "single") {
     const StageTimes end = simulation.times();
     const double total = end.total() - start.total();
-    for (const auto& [name, stage] : {std::pair{"sort", &StageTimes::sort}, {"lists", &StageTimes::lists}, {"gradient", &StageTimes::gradient},
-                                      {"walls", &StageTimes::walls}, {"momentum", &StageTimes::momentum}, {"update", &StageTimes::update}})
+    for (const auto& [name, stage] : {std::pair{"sort", &StageTimes::sort},
+                                      {"lists", &StageTimes::lists},
+                                      {"gradient", &StageTimes::gradient},
+                                      {"walls", &StageTimes::walls},
+                                      {"momentum", &StageTimes::momentum},
+                                      {"update", &StageTimes::update}})
       run["share"][name] = (end.*stage - start.*stage) / total;
   }
   return run;
@@ -188,27 +195,32 @@ Json measure_apart(const BenchOptions& o, const Json& document, const Setting& s
   close(pipe_ends[1]);
   std::string text;
   std::array<char, 4096> buffer;
-  for (ssize_t got; (got = read(pipe_ends[0], buffer.data(), buffer.size())) > 0;) text.append(buffer.data(), static_cast<std::size_t>(got));
+  for (ssize_t got; (got = read(pipe_ends[0], buffer.data(), buffer.size())) > 0;)
+    text.append(buffer.data(), static_cast<std::size_t>(got));
   close(pipe_ends[0]);
   waitpid(child, nullptr, 0);
   const Json run = Json::parse(text, nullptr, false);
-  if (run.is_discarded()) throw IoError("a measurement of " + std::to_string(s.particles) + " particles died; is there memory enough?");
+  if (run.is_discarded())
+    throw IoError("a measurement of " + std::to_string(s.particles) + " particles died; is there memory enough?");
   if (run.contains("error")) throw ConfigError("", run["error"].get<std::string>());
   return run;
 }
 
 void print_header() {
-  std::printf("%9s %7s %-8s %-11s %-6s %-9s %6s  %9s %9s  %7s   %s\n", "particles", "threads", "steps by", "yield", "prec.", "SIMD", "neigh.", "M eval/s",
-              "M steps/s", "bytes/", "share of time [%]: sort lists gradient walls momentum update");
-  std::printf("%9s %7s %-8s %-11s %-6s %-9s %6s  %9s %9s  %7s\n", "", "", "", "", "", "", "", "per core", "per core", "particle");
+  std::printf("%9s %7s %-8s %-11s %-6s %-9s %6s  %9s %9s  %7s   %s\n", "particles", "threads", "steps by", "yield",
+              "prec.", "SIMD", "neigh.", "M eval/s", "M steps/s", "bytes/",
+              "share of time [%]: sort lists gradient walls momentum update");
+  std::printf("%9s %7s %-8s %-11s %-6s %-9s %6s  %9s %9s  %7s\n", "", "", "", "", "", "", "", "per core", "per core",
+              "particle");
 }
 
 void print_row(const Json& r) {
-  std::printf("%9lld %7d %-8s %-11s %-6s %-9s %6.1f  %9.2f %9.2f  %7.0f  ", static_cast<long long>(r["particles"].get<std::int64_t>()),
-              r["threads"].get<int>(), r["integrator"].get<std::string>().c_str(), r["yield"].get<std::string>().c_str(),
-              r["precision"].get<std::string>().c_str(), r["simd"].get<std::string>().c_str(), r["neighbours"].get<double>(),
-              1e-6 * r["evaluations_per_second_per_core"].get<double>(), 1e-6 * r["particle_steps_per_second_per_core"].get<double>(),
-              r["bytes_per_particle"].get<double>());
+  std::printf("%9lld %7d %-8s %-11s %-6s %-9s %6.1f  %9.2f %9.2f  %7.0f  ",
+              static_cast<long long>(r["particles"].get<std::int64_t>()), r["threads"].get<int>(),
+              r["integrator"].get<std::string>().c_str(), r["yield"].get<std::string>().c_str(),
+              r["precision"].get<std::string>().c_str(), r["simd"].get<std::string>().c_str(),
+              r["neighbours"].get<double>(), 1e-6 * r["evaluations_per_second_per_core"].get<double>(),
+              1e-6 * r["particle_steps_per_second_per_core"].get<double>(), r["bytes_per_particle"].get<double>());
   if (r.contains("share"))
     for (const auto& share : r["share"]) std::printf(" %.1f", 100.0 * share.get<double>());
   std::printf("\n");
@@ -230,16 +242,14 @@ Exit bench(BenchOptions o) {
   const Json document = load_document(o);
   // Of the default sizes the paper's is the base.
   const double base = std::ranges::count(o.sizes, 17e3) ? 17e3 : o.sizes.front();
-  Json out = {{"version", version()},
-              {"compiler", TALUS_COMPILER},
-              {"processor", processor()},
-              {"cores", std::thread::hardware_concurrency()},
-              {"case", document.at("title")},
-              {"from_s", o.from},
+  Json out = {{"version", version()},         {"compiler", TALUS_COMPILER},
+              {"processor", processor()},     {"cores", std::thread::hardware_concurrency()},
+              {"case", document.at("title")}, {"from_s", o.from},
               {"runs", Json::array()}};
   if (!o.json) {
-    std::printf("talus %s, %s, %s with %u cores; case \"%s\" from %g s\n", version().c_str(), TALUS_COMPILER, processor().c_str(),
-                std::thread::hardware_concurrency(), document.at("title").get<std::string>().c_str(), o.from);
+    std::printf("talus %s, %s, %s with %u cores; case \"%s\" from %g s\n", version().c_str(), TALUS_COMPILER,
+                processor().c_str(), std::thread::hardware_concurrency(),
+                document.at("title").get<std::string>().c_str(), o.from);
     print_header();
   }
   for (const Setting& s : settings(o, base)) {
@@ -254,14 +264,26 @@ Exit bench(BenchOptions o) {
 
 void add_bench(CLI::App& app, Action& action) {
   const auto o = std::make_shared<BenchOptions>();
-  CLI::App* verb = app.add_subcommand("bench", "measure the speed of the solver on this machine; the first of each list is the base, one at a time is varied");
+  CLI::App* verb = app.add_subcommand(
+      "bench",
+      "measure the speed of the solver on this machine; the first of each list is the base, one at a time is varied");
   verb->add_option("case", o->case_file, "case file; otherwise the illustrative slope");
   verb->add_option("--set", o->overrides, "override a key of the case: path.to.key=value")->allow_extra_args(false);
-  verb->add_option("--sizes", o->sizes, "numbers of particles, walls included")->delimiter(',')->check(CLI::Range(100.0, 8e6));
-  verb->add_option("--threads", o->threads, "numbers of OpenMP threads; otherwise 1 and all")->delimiter(',')->check(CLI::Range(1, 4096));
-  verb->add_option("--integrators", o->integrators, "rk2, leapfrog")->delimiter(',')->check(CLI::IsMember({"rk2", "leapfrog"}));
-  verb->add_option("--yields", o->yields, "elastic, regularized")->delimiter(',')->check(CLI::IsMember({"elastic", "regularized"}));
-  verb->add_option("--precisions", o->precisions, "single, double")->delimiter(',')->check(CLI::IsMember({"single", "double"}));
+  verb->add_option("--sizes", o->sizes, "numbers of particles, walls included")
+      ->delimiter(',')
+      ->check(CLI::Range(100.0, 8e6));
+  verb->add_option("--threads", o->threads, "numbers of OpenMP threads; otherwise 1 and all")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 4096));
+  verb->add_option("--integrators", o->integrators, "rk2, leapfrog")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"rk2", "leapfrog"}));
+  verb->add_option("--yields", o->yields, "elastic, regularized")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"elastic", "regularized"}));
+  verb->add_option("--precisions", o->precisions, "single, double")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"single", "double"}));
   verb->add_option("--seconds", o->seconds, "wall clock of each measurement")->check(CLI::Range(0.01, 3600.0));
   verb->add_option("--from", o->from, "simulated time before the measurement begins [s]")->check(CLI::Range(0.0, 1e6));
   verb->add_flag("--json", o->json, "print one JSON value");

@@ -33,7 +33,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Talus: how far will it run, and how sure are we?", "talus"};
   app.set_version_flag("--version", talus::cli::version_text());
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 ok, 1 internal, 2 usage, 3 bad case, 4 diverged, 5 input/output, 6 stopped with a checkpoint, 7 too many failed runs");
+  app.footer(
+      "Exit codes: 0 ok, 1 internal, 2 usage, 3 bad case, 4 diverged, 5 input/output, 6 stopped with a checkpoint, 7 "
+      "too many failed runs");
   if (const char* simd = std::getenv("TALUS_SIMD"); simd && *simd && !talus::limit_pair_loops(simd))
     return report(Exit::usage, "TALUS_SIMD must be AVX2 or SSE4 (or unset: the best that the processor has)");
   talus::cli::Action action;

@@ -1,5 +1,7 @@
 // talus profile: the slide as a finished run left it, as numbers or as a picture.
 
+#include "figures/profile.hpp"
+
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -8,7 +10,6 @@
 
 #include "case/load.hpp"
 #include "cli/verbs.hpp"
-#include "figures/profile.hpp"
 #include "io/files.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
@@ -33,8 +34,8 @@ ordered_json columns(const Frame& frame) {
     speed.push_back(std::hypot(frame.velocity[i].x, frame.velocity[i].y));
     phi.push_back(frame.phi[i] * 180.0 / std::numbers::pi);
   }
-  return {{"time_s", frame.time}, {"particles", frame.n_soil}, {"x_m", x},           {"y_m", y},
-          {"displacement_m", moved}, {"speed_m_s", speed},      {"friction_angle_deg", phi}};
+  return {{"time_s", frame.time}, {"particles", frame.n_soil}, {"x_m", x}, {"y_m", y}, {"displacement_m", moved},
+          {"speed_m_s", speed},   {"friction_angle_deg", phi}};
 }
 
 Exit profile(const ProfileOptions& options) {

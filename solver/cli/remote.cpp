@@ -158,10 +158,13 @@ void add_remote(CLI::App& app, Action& action) {
   auto options = make();
   CLI::App* verb = add_verb(app, action, "submit", "Hand a study to a talusd; prints the job's name", options, submit);
   verb->add_option("case", options->case_file, "case file (JSON); files that it names are sent along")->required();
-  verb->add_option("--realizations", options->realizations, "how many; otherwise the case's")->check(CLI::Range(1, 1'000'000'000));
-  verb->add_option("--seed", options->seed, "seed of the random fields; otherwise the case's, otherwise the server chooses")
+  verb->add_option("--realizations", options->realizations, "how many; otherwise the case's")
+      ->check(CLI::Range(1, 1'000'000'000));
+  verb->add_option("--seed", options->seed,
+                   "seed of the random fields; otherwise the case's, otherwise the server chooses")
       ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));
-  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")->allow_extra_args(false);
+  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")
+      ->allow_extra_args(false);
   verb->add_flag("--watch", options->watch, "stay until it has ended");
   options = make();
   add_verb(app, action, "status", "How a job is getting on; without a name all of them", options, status)

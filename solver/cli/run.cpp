@@ -55,15 +55,16 @@ std::string utc_now() {
   return text;
 }
 
-/// --seed, else the interrupted run's own, else the case's, else one from the machine's entropy. Never more than 53 bits,
-/// so that every reader of JSON keeps it exact.
+/// --seed, else the interrupted run's own, else the case's, else one from the machine's entropy. Never more than 53
+/// bits, so that every reader of JSON keeps it exact.
 std::uint64_t choose_seed(const RunOptions& options, const LoadedCase& loaded) {
   if (options.seed) return *options.seed;
   const fs::path earlier = options.out / "case.resolved.json";
   if (options.resume && fs::exists(earlier)) {
     const auto document = nlohmann::json::parse(read_file(earlier, 64u << 20), nullptr, false);
     const nlohmann::json::json_pointer seed("/study/seed");
-    if (!document.is_discarded() && document.contains(seed) && document[seed].is_number_unsigned()) return document[seed];
+    if (!document.is_discarded() && document.contains(seed) && document[seed].is_number_unsigned())
+      return document[seed];
   }
   if (loaded.value.study.seed) return *loaded.value.study.seed;
   std::random_device entropy;
@@ -74,10 +75,14 @@ std::uint64_t choose_seed(const RunOptions& options, const LoadedCase& loaded) {
 class Recorder {
  public:
   Recorder(const fs::path& directory, const Simulation& simulation, const Model& model, bool resumed)
-      : history_file_(directory / "history.csv"), due_(model.time.snapshots), history_step_(model.time.end / history_rows) {
+      : history_file_(directory / "history.csv"),
+        due_(model.time.snapshots),
+        history_step_(model.time.end / history_rows) {
     const fs::path path = directory / "snapshots.vtkhdf";
-    if (resumed) snapshots_.emplace(SnapshotWriter::resume(path, simulation.time()));
-    else write([this, path, frame = simulation.frame()] { snapshots_.emplace(path, frame); });
+    if (resumed)
+      snapshots_.emplace(SnapshotWriter::resume(path, simulation.time()));
+    else
+      write([this, path, frame = simulation.frame()] { snapshots_.emplace(path, frame); });
     if (resumed && fs::exists(history_file_))
       for (const HistoryRow& row : read_history(history_file_))
         if (row.step <= simulation.steps()) history_.push_back(row);
@@ -85,7 +90,8 @@ class Recorder {
     while (!due_.empty() && due_.front() <= simulation.time()) due_.erase(due_.begin());
   }
 
-  /// To be called after every step. Snapshots are taken at the first step at or after their time: a step is never shortened for them.
+  /// To be called after every step. Snapshots are taken at the first step at or after their time: a step is never
+  /// shortened for them.
   /// @throws IoError when a snapshot could not be written
   void record(const Simulation& simulation) {
     if (writing_.valid() && writing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) writing_.get();
@@ -135,8 +141,9 @@ class ProgressLine {
     if (!on_ || elapsed < next_) return;
     next_ = elapsed + 0.2;
     const double share = simulation.time() / end;
-    std::fprintf(stderr, "\r\033[K%5.1f %%  t = %.2f of %g s  front %.2f m  %.0f s left at most", 100.0 * share, simulation.time(), end,
-                 simulation.history_row().front, share > 0.0 ? elapsed * (1.0 - share) / share : 0.0);
+    std::fprintf(stderr, "\r\033[K%5.1f %%  t = %.2f of %g s  front %.2f m  %.0f s left at most", 100.0 * share,
+                 simulation.time(), end, simulation.history_row().front,
+                 share > 0.0 ? elapsed * (1.0 - share) / share : 0.0);
     std::fflush(stderr);
     shown_ = true;
   }
@@ -147,21 +154,26 @@ class ProgressLine {
 };
 
 void print_summary(const RunResult& r, const RunIdentity& identity) {
-  std::printf("influence zone        %10.3f m   (farthest particle from the left boundary)\n", r.measures.influence_zone);
+  std::printf("influence zone        %10.3f m   (farthest particle from the left boundary)\n",
+              r.measures.influence_zone);
   std::printf("front, connected body %10.3f m\n", r.measures.front_connected);
   std::printf("front, 99.9 %% of mass %10.3f m\n", r.measures.front_mass_999);
   std::printf("front, 99 %% of mass   %10.3f m\n", r.measures.front_mass_99);
   std::printf("centre of mass x      %10.3f m\n", r.measures.centre_of_mass_x);
-  std::printf("time reached          %10.3f s   in %lld steps%s\n", r.time, static_cast<long long>(r.steps), r.at_rest ? ", at rest" : "");
-  std::printf("particles             %10lld soil + %lld wall, %lld penetrated\n", static_cast<long long>(r.soil), static_cast<long long>(r.wall),
-              static_cast<long long>(r.penetrated));
-  if (r.left_domain > 0) std::printf("left the terrain      %10lld particles: fronts end where the bed ends\n", static_cast<long long>(r.left_domain));
+  std::printf("time reached          %10.3f s   in %lld steps%s\n", r.time, static_cast<long long>(r.steps),
+              r.at_rest ? ", at rest" : "");
+  std::printf("particles             %10lld soil + %lld wall, %lld penetrated\n", static_cast<long long>(r.soil),
+              static_cast<long long>(r.wall), static_cast<long long>(r.penetrated));
+  if (r.left_domain > 0)
+    std::printf("left the terrain      %10lld particles: fronts end where the bed ends\n",
+                static_cast<long long>(r.left_domain));
   if (r.field.terms > 0)
-    std::printf("random field          %10lld terms, %.1f %% of the variance, mean friction angle %.2f deg, seed %llu\n",
-                static_cast<long long>(r.field.terms), 100.0 * r.field.captured_variance, r.field.mean_phi * 180.0 / M_PI,
-                static_cast<unsigned long long>(identity.seed));
-  std::printf("wall clock            %10.2f s   on %d thread%s\ndigest                %s\n", r.wall_clock, r.threads, r.threads == 1 ? "" : "s",
-              r.digest.c_str());
+    std::printf(
+        "random field          %10lld terms, %.1f %% of the variance, mean friction angle %.2f deg, seed %llu\n",
+        static_cast<long long>(r.field.terms), 100.0 * r.field.captured_variance, r.field.mean_phi * 180.0 / M_PI,
+        static_cast<unsigned long long>(identity.seed));
+  std::printf("wall clock            %10.2f s   on %d thread%s\ndigest                %s\n", r.wall_clock, r.threads,
+              r.threads == 1 ? "" : "s", r.digest.c_str());
 }
 
 /// The run itself is done; figures that cannot be drawn are no reason to fail.
@@ -184,14 +196,18 @@ Exit run(const RunOptions& options) {
   const ParticlePlan plan = plan_particles(problem.model);
   const Strength soil_strength = strength(problem.model, problem.field, problem.study, plan, identity);
   OutputDirectory out(options.out, OutputKind::run, loaded.hash, options.resume);
-  const Provenance provenance{version(), identity.seed, identity.realization, options.perturbation, loaded.hash, problem.title, TALUS_COMPILER, utc_now()};
+  const Provenance provenance{version(),   identity.seed, identity.realization, options.perturbation,
+                              loaded.hash, problem.title, TALUS_COMPILER,       utc_now()};
   const fs::path result_file = out.path() / "result.json", checkpoint_file = out.path() / "checkpoint.h5";
   if (out.finished()) {
     const auto [result, of] = read_result(result_file);
     if (of.seed != identity.seed || of.realization != identity.realization || of.perturbation != options.perturbation)
-      throw IoError(out.path().string() + " holds the finished run of another seed or realization; choose another --out");
-    if (options.json) std::cout << read_file(result_file, 1u << 20);
-    else if (!options.study_worker) print_summary(result, identity);
+      throw IoError(out.path().string() +
+                    " holds the finished run of another seed or realization; choose another --out");
+    if (options.json)
+      std::cout << read_file(result_file, 1u << 20);
+    else if (!options.study_worker)
+      print_summary(result, identity);
     return Exit::ok;
   }
 
@@ -203,7 +219,8 @@ Exit run(const RunOptions& options) {
   if (resumed) {
     const State state = read_checkpoint(checkpoint_file, header);
     simulation.restore(state);
-    if (const auto clock = state.reals.find("wall_clock"); clock != state.reals.end() && clock->second.size() == 1) earlier = clock->second[0];
+    if (const auto clock = state.reals.find("wall_clock"); clock != state.reals.end() && clock->second.size() == 1)
+      earlier = clock->second[0];
   }
   write_file_atomically(out.path() / "case.resolved.json", loaded.resolved.dump(2) + "\n");
   Recorder recorder(out.path(), simulation, problem.model, resumed);
@@ -223,7 +240,8 @@ Exit run(const RunOptions& options) {
       if (stop_requested()) {
         checkpoint();
         if (!options.study_worker)
-          std::cerr << "stopped at t = " << simulation.time() << " s with a checkpoint; go on with the same command and --resume\n";
+          std::cerr << "stopped at t = " << simulation.time()
+                    << " s with a checkpoint; go on with the same command and --resume\n";
         return Exit::interrupted;
       }
       simulation.step(problem.model.time.end);
@@ -249,10 +267,14 @@ Exit run(const RunOptions& options) {
   write_file_atomically(result_file, text);
   out.mark_finished();
   fs::remove(checkpoint_file);
-  if (options.json) std::cout << text;
-  else if (!options.study_worker) print_summary(result, identity);
+  if (options.json)
+    std::cout << text;
+  else if (!options.study_worker)
+    print_summary(result, identity);
   if (result.penetrated > 0 && !options.study_worker)
-    std::cerr << "warning: " << result.penetrated << " particles passed through a wall: do not trust this run; try a smaller time step or more wall layers\n";
+    std::cerr
+        << "warning: " << result.penetrated
+        << " particles passed through a wall: do not trust this run; try a smaller time step or more wall layers\n";
   if (options.figures) draw_figures(out.path());
   return Exit::ok;
 }
@@ -261,18 +283,24 @@ Exit run(const RunOptions& options) {
 
 void add_run(CLI::App& app, Action& action) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* verb = app.add_subcommand("run", "Run one realization: result.json, case.resolved.json, snapshots.vtkhdf, history.csv");
+  CLI::App* verb =
+      app.add_subcommand("run", "Run one realization: result.json, case.resolved.json, snapshots.vtkhdf, history.csv");
   verb->add_option("case", options->case_file, "case file (JSON)")->required();
   verb->add_option("--out", options->out, "directory for the results; created, or empty")->required();
-  verb->add_option("--realization", options->realization, "index of the realization, from 0; without it the median run")->check(CLI::NonNegativeNumber);
-  verb->add_option("--seed", options->seed, "seed of the random field; otherwise the case's, otherwise a new one, which is recorded")
+  verb->add_option("--realization", options->realization, "index of the realization, from 0; without it the median run")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--seed", options->seed,
+                   "seed of the random field; otherwise the case's, otherwise a new one, which is recorded")
       ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));  // what every reader of JSON keeps exact
-  verb->add_option("--threads", options->threads, "OpenMP threads; the result does not depend on them")->check(CLI::Range(1, 4096));
-  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")->allow_extra_args(false);
+  verb->add_option("--threads", options->threads, "OpenMP threads; the result does not depend on them")
+      ->check(CLI::Range(1, 4096));
+  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")
+      ->allow_extra_args(false);
   verb->add_flag("--resume", options->resume, "go on from the checkpoint in --out");
   verb->add_flag("--figures", options->figures, "draw profiles at the snapshot times");
   verb->add_flag("--json", options->json, "print result.json on stdout");
-  verb->add_option("--perturbation", options->perturbation, "relative change of tan(phi), for noise-floor replicates")->group("");
+  verb->add_option("--perturbation", options->perturbation, "relative change of tan(phi), for noise-floor replicates")
+      ->group("");
   verb->add_flag("--study-worker", options->study_worker, "quiet, and dies with its parent")->group("");
   verb->callback([options, &action] { action = [options] { return run(*options); }; });
 }

@@ -49,18 +49,21 @@ class TalusServer::Connection {
     if (!client.is_valid()) throw ConfigError("", not_a_url(url));
     client.set_connection_timeout(connect_seconds);
     client.set_read_timeout(read_seconds);
-    if (const std::string secret = token(options); !secret.empty()) headers.emplace("Authorization", "Bearer " + secret);
+    if (const std::string secret = token(options); !secret.empty())
+      headers.emplace("Authorization", "Bearer " + secret);
   }
 
   ordered_json answer(const httplib::Result& result) const {
-    if (!result) throw IoError("cannot reach " + url + ": " + httplib::to_string(result.error()) + "; does talusd run there?");
+    if (!result)
+      throw IoError("cannot reach " + url + ": " + httplib::to_string(result.error()) + "; does talusd run there?");
     const ordered_json body = ordered_json::parse(result->body, nullptr, false);
     if (body.is_discarded()) throw IoError(url + " does not answer as talusd does");
     if (result->status < 300) return body;
     const std::string detail = body.value("detail", "status " + std::to_string(result->status));
     std::vector<Fault> faults;
     if (body.contains("errors"))
-      for (const auto& error : body.at("errors")) faults.push_back({error.value("pointer", ""), error.value("message", "")});
+      for (const auto& error : body.at("errors"))
+        faults.push_back({error.value("pointer", ""), error.value("message", "")});
     if (result->status == 400 || result->status == 422) {
       if (faults.empty()) faults.push_back({"", detail});
       throw ConfigError(faults);

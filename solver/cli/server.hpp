@@ -1,11 +1,10 @@
 #pragma once
 // A talusd, as the client verbs speak to it.
 
+#include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-
-#include <CLI/CLI.hpp>
 
 namespace talus::cli {
 

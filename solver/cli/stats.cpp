@@ -2,7 +2,6 @@
 // it with other bins.
 
 #include <algorithm>
-
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -53,7 +52,8 @@ nlohmann::ordered_json distribution(const nlohmann::ordered_json& study, const T
   const nlohmann::ordered_json& realizations = study.at("realizations");
   nlohmann::ordered_json out = {{"quantity", options.quantity}};
   for (const char* key : {"planned", "done", "failed", "complete"}) out[key] = realizations.at(key);
-  for (const char* key : {"n", "mean", "mean_ci95", "stdev", "min", "max", "noise_floor_stdev", "stdev_over_noise_floor"})
+  for (const char* key :
+       {"n", "mean", "mean_ci95", "stdev", "min", "max", "noise_floor_stdev", "stdev_over_noise_floor"})
     out[key] = quantity.at(key);
   out["histogram"] = quantity.at("histogram");
   if (options.bins == 0 && options.edges.empty()) return out;
@@ -76,8 +76,9 @@ std::string misuse(const StatsOptions& options) {
     return "several studies are merged into a new directory: give --out DIR";
   if (options.quantity.empty() && (options.bins > 0 || !options.edges.empty()))
     return "--bins and --edges go with --quantity";
-  if (!options.edges.empty() && (options.edges.size() < 2 || !std::is_sorted(options.edges.begin(), options.edges.end()) ||
-                                 std::adjacent_find(options.edges.begin(), options.edges.end()) != options.edges.end()))
+  if (!options.edges.empty() &&
+      (options.edges.size() < 2 || !std::is_sorted(options.edges.begin(), options.edges.end()) ||
+       std::adjacent_find(options.edges.begin(), options.edges.end()) != options.edges.end()))
     return "--edges must be at least two increasing numbers";
   return {};
 }
@@ -140,8 +141,8 @@ void add_stats(CLI::App& app, Action& action) {
   verb->add_flag("--from-runs", options->from_runs, "write the tables from the results in runs/ first");
   verb->add_option("--quantity", options->quantity, "only print how this one is distributed, as JSON")
       ->check(CLI::IsMember(quantity_names()));
-  auto* bins = verb->add_option("--bins", options->bins, "with --quantity: so many equal bins")
-                   ->check(CLI::Range(1, most_bins));
+  auto* bins =
+      verb->add_option("--bins", options->bins, "with --quantity: so many equal bins")->check(CLI::Range(1, most_bins));
   verb->add_option("--edges", options->edges, "with --quantity: edges of the bins, separated by commas")
       ->delimiter(',')
       ->excludes(bins);

@@ -103,7 +103,8 @@ void use_slurm(DriverOptions& driver, const StudyOptions& options, Reporter& rep
   const std::vector<std::string> array_task{driver.program.front(), "array-task"};
   const auto note = [&reporter](const std::string& text) { reporter.note(text); };
   driver.make_executor = [=, threads = driver.threads](const StudyPaths& paths) {
-    return std::make_unique<executor::SlurmExecutor>(config, fs::absolute(paths.work()) / "slurm", array_task, threads, note);
+    return std::make_unique<executor::SlurmExecutor>(config, fs::absolute(paths.work()) / "slurm", array_task, threads,
+                                                     note);
   };
   driver.attempts = slurm_attempts;
 }

@@ -1,9 +1,8 @@
 #pragma once
 // The verbs of the command line: each adds its subcommand and, once chosen, sets the action to carry out.
 
-#include <functional>
-
 #include <CLI/CLI.hpp>
+#include <functional>
 
 #include "math/error.hpp"
 

@@ -54,7 +54,7 @@ class SlurmExecutor final : public Executor {
     int missed = 0;  ///< looks at the queue that did not find it
     std::optional<Steady::time_point> running_since = {};
     std::string reason = {};  ///< Slurm's word for why it waits
-    bool over = false;  ///< nothing more is to come from it
+    bool over = false;        ///< nothing more is to come from it
     bool unwanted = false;
   };
   struct Batch {

@@ -61,7 +61,8 @@ class FileActions {
   posix_spawn_file_actions_t actions_;
 };
 
-/// Ours, but for a language whose letters are those of the scripts: gnuplot 6 warns of a degree sign in the plain C locale.
+/// Ours, but for a language whose letters are those of the scripts: gnuplot 6 warns of a degree sign in the plain C
+/// locale.
 std::vector<char*> environment_of_gnuplot() {
   static char letters[] = "LC_ALL=C.UTF-8";
   std::vector<char*> variables = {letters};

@@ -52,7 +52,8 @@ void step_leapfrog(Soil& soil, StepStart& start, double dt, const Evaluate& eval
   evaluate(soil);
 #pragma omp parallel for schedule(static)
   for (std::size_t i = 0; i < n; ++i) {
-    // What the evaluation took off the stress in the middle, to return it to the yield surface, is off the start as well.
+    // What the evaluation took off the stress in the middle, to return it to the yield surface, is off the start as
+    // well.
     start.txx[i] += soil.txx[i], start.tyy[i] += soil.tyy[i], start.txy[i] += soil.txy[i];
     move_from(soil, start, i, dt);
     soil.x[i] += 0.5 * dt * soil.vx[i];

@@ -21,8 +21,8 @@ struct StepStart {
 ///   y' = y + dt/2 f(y);  y <- y + dt f(y')
 void step_rk2(Soil& soil, StepStart& start, double dt, const Evaluate& evaluate);
 
-/// Leapfrog in its drift-kick-drift form: one evaluation. Velocities, densities and stresses are predicted to the middle with
-/// the rates of the step before, so that forces depending on them stay second order.
+/// Leapfrog in its drift-kick-drift form: one evaluation. Velocities, densities and stresses are predicted to the
+/// middle with the rates of the step before, so that forces depending on them stay second order.
 ///   x' = x + dt/2 v;  v <- v + dt a(x', v');  x <- x' + dt/2 v
 void step_leapfrog(Soil& soil, StepStart& start, double dt, const Evaluate& evaluate);
 

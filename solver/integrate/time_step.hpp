@@ -7,10 +7,10 @@ namespace talus {
 
 /// What bounds the explicit step.
 struct StepBounds {
-  double cfl;     ///< Courant number [-]
-  double h;       ///< smoothing length [m]
-  double c;       ///< fastest wave [m/s]: compression wave of fluid or of the elastic law
-  double nu;      ///< largest eta/rho0 of the materials [m2/s]; eta alone, since the yield stress is bounded
+  double cfl;  ///< Courant number [-]
+  double h;    ///< smoothing length [m]
+  double c;    ///< fastest wave [m/s]: compression wave of fluid or of the elastic law
+  double nu;   ///< largest eta/rho0 of the materials [m2/s]; eta alone, since the yield stress is bounded
 };
 
 /// dt = min(cfl h/(c + |v|), cfl sqrt(h/|a|), 0.125 h^2/nu)       Monaghan 1992; Morris 1997 for the viscous limit

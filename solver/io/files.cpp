@@ -140,8 +140,7 @@ void remove_directory(const fs::path& path) {
     std::error_code error;
     fs::remove_all(path, error);
     if (!error) return;
-    if (!may_pass(error) || std::chrono::steady_clock::now() > end)
-      throw_io_error("remove", path, error.value());
+    if (!may_pass(error) || std::chrono::steady_clock::now() > end) throw_io_error("remove", path, error.value());
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
   }
 }

@@ -8,7 +8,8 @@ namespace talus {
 /// dt/dt = omega t - t omega + 2 G dev(e): elastic rate with the Jaumann spin terms, so that a rigid rotation turns the
 /// stress without changing it. `spin` is omega_xy [1/s], G the numerical shear modulus [Pa].
 constexpr Dev elastic_rate(Dev t, Dev e, double spin, double G) {
-  return {2.0 * spin * t.xy + 2.0 * G * e.xx, -2.0 * spin * t.xy + 2.0 * G * e.yy, spin * (t.yy - t.xx) + 2.0 * G * e.xy};
+  return {2.0 * spin * t.xy + 2.0 * G * e.xx, -2.0 * spin * t.xy + 2.0 * G * e.yy,
+          spin * (t.yy - t.xx) + 2.0 * G * e.xy};
 }
 
 /// Scales t back to the yield surface: sqrt(t:t/2) <= tau_y.

@@ -17,13 +17,15 @@ struct Fault {
 /// A case that cannot be run; carries every fault found. Exit code 3.
 struct ConfigError : std::runtime_error {
   explicit ConfigError(std::vector<Fault> all) : std::runtime_error(join(all)), faults(std::move(all)) {}
-  ConfigError(std::string pointer, std::string message) : ConfigError(std::vector<Fault>{{std::move(pointer), std::move(message)}}) {}
+  ConfigError(std::string pointer, std::string message)
+      : ConfigError(std::vector<Fault>{{std::move(pointer), std::move(message)}}) {}
   std::vector<Fault> faults;
 
  private:
   static std::string join(const std::vector<Fault>& all) {
     std::string text;
-    for (const Fault& f : all) text += (text.empty() ? "" : "\n") + (f.pointer.empty() ? f.message : f.pointer + ": " + f.message);
+    for (const Fault& f : all)
+      text += (text.empty() ? "" : "\n") + (f.pointer.empty() ? f.message : f.pointer + ": " + f.message);
     return text;
   }
 };
@@ -44,7 +46,16 @@ struct IoError : std::runtime_error {
 
 /// Exit codes of every program of Talus.
 enum class Exit : int {
-  ok = 0, internal = 1, usage = 2, bad_case = 3, diverged = 4, io = 5, interrupted = 6, too_many_failed = 7, sigint = 130, sigterm = 143
+  ok = 0,
+  internal = 1,
+  usage = 2,
+  bad_case = 3,
+  diverged = 4,
+  io = 5,
+  interrupted = 6,
+  too_many_failed = 7,
+  sigint = 130,
+  sigterm = 143
 };
 
 }  // namespace talus

@@ -56,7 +56,8 @@ constexpr Sym2 cauchy(double p, Dev t) { return {t.xx - p, t.yy - p, t.xy}; }
 constexpr Sym2 mirrored(Sym2 s, Vec2 n) {
   const Vec2 t{-n.y, n.x};
   const double s_tn = dot(t, s * n);
-  return {s.xx - 2.0 * s_tn * 2.0 * n.x * t.x, s.yy - 2.0 * s_tn * 2.0 * n.y * t.y, s.xy - 2.0 * s_tn * (n.x * t.y + n.y * t.x)};
+  return {s.xx - 2.0 * s_tn * 2.0 * n.x * t.x, s.yy - 2.0 * s_tn * 2.0 * n.y * t.y,
+          s.xy - 2.0 * s_tn * (n.x * t.y + n.y * t.x)};
 }
 
 }  // namespace talus

@@ -9,12 +9,14 @@
 namespace talus {
 namespace {
 
-std::vector<double> draw(const RandomField& field, const FieldSpec& spec, const StudySpec& study, const RunIdentity& identity) {
+std::vector<double> draw(const RandomField& field, const FieldSpec& spec, const StudySpec& study,
+                         const RunIdentity& identity) {
   if (!identity.realization) return spec.xi.empty() ? std::vector<double>(field.terms(), 0.0) : spec.xi;
   const auto index = static_cast<std::uint64_t>(*identity.realization);
   if (study.sampling == Sampling::monte_carlo) return field.draw(identity.seed, index);
   if (*identity.realization >= study.realizations)
-    throw ConfigError("/study/realizations", "realization " + std::to_string(index) + " lies outside the Latin hypercube of " +
+    throw ConfigError("/study/realizations", "realization " + std::to_string(index) +
+                                                 " lies outside the Latin hypercube of " +
                                                  std::to_string(study.realizations) + " realizations");
   return field.draw_stratified(identity.seed, static_cast<std::uint64_t>(study.realizations), index,
                                static_cast<std::size_t>(study.stratified_modes));
@@ -22,8 +24,8 @@ std::vector<double> draw(const RandomField& field, const FieldSpec& spec, const 
 
 }  // namespace
 
-Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study, const ParticlePlan& plan,
-                  const RunIdentity& identity) {
+Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study,
+                  const ParticlePlan& plan, const RunIdentity& identity) {
   Strength result;
   std::vector<double> mu;
   for (const SoilPoint& point : plan.soil)

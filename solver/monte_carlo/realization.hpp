@@ -26,10 +26,10 @@ struct Strength {
   FieldSummary summary;
 };
 
-/// tan(phi) = exp(mu + sigma Z(x)) (1 + perturbation) where the case has a random field, tan(phi) of the material otherwise.
-/// [Z20] Eq. 12. With Latin hypercube sampling the draws depend on StudySpec::realizations, as they must.
+/// tan(phi) = exp(mu + sigma Z(x)) (1 + perturbation) where the case has a random field, tan(phi) of the material
+/// otherwise. [Z20] Eq. 12. With Latin hypercube sampling the draws depend on StudySpec::realizations, as they must.
 /// @throws ConfigError when the field cannot be built or the realization lies outside a Latin hypercube study
-Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study, const ParticlePlan& plan,
-                  const RunIdentity& identity);
+Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study,
+                  const ParticlePlan& plan, const RunIdentity& identity);
 
 }  // namespace talus

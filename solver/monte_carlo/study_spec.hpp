@@ -10,9 +10,9 @@ namespace talus {
 enum class Sampling { monte_carlo, latin_hypercube };
 
 struct StudySpec {
-  std::int64_t realizations = 100;        ///< planned, >= 1
-  std::optional<std::uint64_t> seed;      ///< unset: taken from the clock and recorded
-  int noise_floor_replicates = 4;         ///< runs that differ by a relative 1e-6 of tan(phi) from realization 0; 0: none
+  std::int64_t realizations = 100;    ///< planned, >= 1
+  std::optional<std::uint64_t> seed;  ///< unset: taken from the clock and recorded
+  int noise_floor_replicates = 4;     ///< runs that differ by a relative 1e-6 of tan(phi) from realization 0; 0: none
   Sampling sampling = Sampling::monte_carlo;
   int stratified_modes = 5;               ///< leading modes that Latin hypercube sampling stratifies, >= 1
   std::optional<double> stop_half_width;  ///< stop once the 95 % interval of the mean influence zone is this narrow [m]

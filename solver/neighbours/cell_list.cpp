@@ -7,7 +7,8 @@
 namespace talus {
 
 namespace {
-// A stray particle far away must not blow the grid up: beyond this size the grid stops and the rest is clamped into its border.
+// A stray particle far away must not blow the grid up: beyond this size the grid stops and the rest is clamped into its
+// border.
 constexpr std::int64_t max_cells = 1 << 22, max_rows = 1 << 11;
 }  // namespace
 

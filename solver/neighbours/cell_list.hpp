@@ -1,6 +1,6 @@
 #pragma once
-// Linked-list cells (Hockney & Eastwood 1988) over points stored in cell order, so that the candidates around a place are a
-// few contiguous index ranges.
+// Linked-list cells (Hockney & Eastwood 1988) over points stored in cell order, so that the candidates around a place
+// are a few contiguous index ranges.
 
 #include <algorithm>
 #include <array>
@@ -15,8 +15,9 @@
 
 namespace talus {
 
-/// Cells a reach high and a quarter of it wide: a search visits three rows, each one contiguous range of places in which the
-/// points stand almost in order of x. Long ranges suit vectors, narrow cells keep them from carrying much that is too far.
+/// Cells a reach high and a quarter of it wide: a search visits three rows, each one contiguous range of places in
+/// which the points stand almost in order of x. Long ranges suit vectors, narrow cells keep them from carrying much
+/// that is too far.
 class CellList {
  public:
   /// Ranges [begin, end) of places to search, bottom row first.
@@ -31,7 +32,9 @@ class CellList {
   /// The order is stable: points of one cell keep their sequence.
   template <class Real>
   void build(std::span<const Real> x, std::span<const Real> y, double reach);
-  void build(const std::vector<double>& x, const std::vector<double>& y, double reach) { build(std::span(x), std::span(y), reach); }
+  void build(const std::vector<double>& x, const std::vector<double>& y, double reach) {
+    build(std::span(x), std::span(y), reach);
+  }
 
   /// order()[k] = index before sorting of the point that must stand at place k. Apply it before searching.
   std::span<const std::uint32_t> order() const { return order_; }

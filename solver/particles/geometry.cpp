@@ -108,7 +108,8 @@ Polyline offset_into_rock(const Polyline& line, double offset) {
   const std::size_t n = line.vertices.size();
   for (std::size_t k = 0; k < n; ++k) {
     const bool first = k == 0 && !line.closed, last = k + 1 == n && !line.closed;
-    const Vec2 n_in = first ? left_normal(line.end(0) - line.start(0)) : left_normal(line.vertices[k] - line.vertices[(k + n - 1) % n]);
+    const Vec2 n_in = first ? left_normal(line.end(0) - line.start(0))
+                            : left_normal(line.vertices[k] - line.vertices[(k + n - 1) % n]);
     const Vec2 n_out = last ? n_in : left_normal(line.vertices[(k + 1) % n] - line.vertices[k]);
     // Mitre: the corner moves along the bisector so that both segments move by `offset`; never by more than 4 offsets.
     const double mitre = std::max(1.0 + dot(n_in, n_out), 0.125);
@@ -126,7 +127,8 @@ Polyline wall_line(const Terrain& terrain, double dx, Placement placement) {
   return placement == Placement::nodes ? offset_into_rock(line, 0.5 * dx) : line;
 }
 
-std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, const Terrain& terrain, double dx, Placement placement) {
+std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, const Terrain& terrain, double dx,
+                                  Placement placement) {
   const bool nodes = placement == Placement::nodes;
   const Box box = bounding_box(slide);
   const Polyline wall = wall_line(terrain, dx, placement);
@@ -138,7 +140,8 @@ std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, const Terrai
   std::vector<SoilPoint> points;
   for (std::int64_t row = 0; row < rows; ++row)
     for (std::int64_t column = 0; column < columns; ++column) {
-      const Vec2 x{box.lo.x + (static_cast<double>(column) + shift) * dx, box.lo.y + (static_cast<double>(row) + shift) * dx};
+      const Vec2 x{box.lo.x + (static_cast<double>(column) + shift) * dx,
+                   box.lo.y + (static_cast<double>(row) + shift) * dx};
       // Lattice nodes that fall on the far edges would be lost to rounding: test a point pulled in by a hair.
       const Vec2 probe = nodes ? Vec2{std::clamp(x.x, box.lo.x + tolerance, box.hi.x - tolerance),
                                       std::clamp(x.y, box.lo.y + tolerance, box.hi.y - tolerance)}

@@ -56,6 +56,7 @@ struct SoilPoint {
 
 /// Fills the outlines with a square lattice of spacing dx, row by row from the bottom left.
 /// Points nearer than dx/2 to the wall line are left out: they would start compressed against the wall.
-std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, const Terrain& terrain, double dx, Placement placement);
+std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, const Terrain& terrain, double dx,
+                                  Placement placement);
 
 }  // namespace talus

@@ -10,11 +10,11 @@ namespace talus {
 /// The rigid ground. An open bed runs from left to right, the soil lies above it; a closed one is a ring that is walked
 /// counter-clockwise and holds the soil inside.
 struct Terrain {
-  std::vector<Vec2> bed;       ///< vertices [m]; open: x strictly increasing; closed: first vertex not repeated at the end
-  bool closed = false;         ///< the bed is a ring
-  bool left_wall = true;       ///< a vertical wall stands on the first bed vertex
-  bool right_wall = false;     ///< a vertical wall stands on the last bed vertex
-  double wall_top = 0.0;       ///< y of the top of the end walls [m]
+  std::vector<Vec2> bed;    ///< vertices [m]; open: x strictly increasing; closed: first vertex not repeated at the end
+  bool closed = false;      ///< the bed is a ring
+  bool left_wall = true;    ///< a vertical wall stands on the first bed vertex
+  bool right_wall = false;  ///< a vertical wall stands on the last bed vertex
+  double wall_top = 0.0;    ///< y of the top of the end walls [m]
   double left_boundary = 0.0;  ///< x from which influence zones are measured [m]
   bool operator==(const Terrain&) const = default;
 };

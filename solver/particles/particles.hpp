@@ -12,22 +12,22 @@ namespace talus {
 /// Soil particles; every array has size() entries and all are permuted together.
 /// The first n_active take part in the flow; the rest left through an open end and keep their last state.
 struct Soil {
-  std::vector<double> x, y;         ///< position [m]
-  std::vector<double> vx, vy;       ///< velocity [m/s]
-  std::vector<double> rho;          ///< density [kg/m3]
+  std::vector<double> x, y;           ///< position [m]
+  std::vector<double> vx, vy;         ///< velocity [m/s]
+  std::vector<double> rho;            ///< density [kg/m3]
   std::vector<double> txx, tyy, txy;  ///< deviatoric stress of the elastic law [Pa]
-  std::vector<double> m;            ///< mass [kg/m]
-  std::vector<double> tan_phi;      ///< tangent of the friction angle [-]
+  std::vector<double> m;              ///< mass [kg/m]
+  std::vector<double> tan_phi;        ///< tangent of the friction angle [-]
   // What evaluations in double precision write; empty where the vectorised loops run, which keep their own.
-  std::vector<double> ax, ay;       ///< acceleration of the last evaluation [m/s2]
-  std::vector<double> drho;         ///< rate of density [kg/m3/s]
-  std::vector<double> dtxx, dtyy, dtxy;  ///< rate of deviatoric stress [Pa/s]
-  std::vector<double> gamma_dot;    ///< shear rate of the last evaluation [1/s]
-  std::vector<double> p;            ///< pressure of the last evaluation [Pa]
-  std::vector<double> sxx, syy, sxy;  ///< Cauchy stress of the last evaluation [Pa]
+  std::vector<double> ax, ay;             ///< acceleration of the last evaluation [m/s2]
+  std::vector<double> drho;               ///< rate of density [kg/m3/s]
+  std::vector<double> dtxx, dtyy, dtxy;   ///< rate of deviatoric stress [Pa/s]
+  std::vector<double> gamma_dot;          ///< shear rate of the last evaluation [1/s]
+  std::vector<double> p;                  ///< pressure of the last evaluation [Pa]
+  std::vector<double> sxx, syy, sxy;      ///< Cauchy stress of the last evaluation [Pa]
   std::vector<float> x_sorted, y_sorted;  ///< position at the last sort, rounded [m]
   std::vector<std::int32_t> material;
-  std::vector<std::int32_t> id;     ///< identity, 0..size()-1
+  std::vector<std::int32_t> id;  ///< identity, 0..size()-1
   std::size_t n_active = 0;
 
   std::size_t size() const { return x.size(); }
@@ -41,7 +41,8 @@ struct Soil {
 /// State: what a particle is.
 template <class S, class F>
 void for_each_state(S& s, F&& f) {
-  f("x", s.x), f("y", s.y), f("vx", s.vx), f("vy", s.vy), f("rho", s.rho), f("txx", s.txx), f("tyy", s.tyy), f("txy", s.txy);
+  f("x", s.x), f("y", s.y), f("vx", s.vx), f("vy", s.vy), f("rho", s.rho), f("txx", s.txx), f("tyy", s.tyy),
+      f("txy", s.txy);
   f("m", s.m), f("tan_phi", s.tan_phi);
 }
 /// Rates of the last evaluation: the leapfrog predicts with them.
@@ -62,13 +63,13 @@ void for_each_real(S& s, F&& f) {
 
 /// Wall particles; fixed, sorted by cell once.
 struct WallParticles {
-  std::vector<double> x, y;            ///< position [m]
-  std::vector<double> nx, ny;          ///< unit normal of the wall, towards the soil
-  std::vector<double> depth;           ///< distance to the wall line [m]
-  std::vector<double> p;               ///< pressure extrapolated from the soil [Pa]
-  std::vector<double> sxx, syy, sxy;   ///< stress extrapolated from the soil [Pa]
-  std::vector<double> compression;     ///< rho/rho0 of the soil extrapolated to here [-]; 0 where no soil is near
-  double volume = 0.0;                 ///< of each particle [m3/m]
+  std::vector<double> x, y;           ///< position [m]
+  std::vector<double> nx, ny;         ///< unit normal of the wall, towards the soil
+  std::vector<double> depth;          ///< distance to the wall line [m]
+  std::vector<double> p;              ///< pressure extrapolated from the soil [Pa]
+  std::vector<double> sxx, syy, sxy;  ///< stress extrapolated from the soil [Pa]
+  std::vector<double> compression;    ///< rho/rho0 of the soil extrapolated to here [-]; 0 where no soil is near
+  double volume = 0.0;                ///< of each particle [m3/m]
 
   std::size_t size() const { return x.size(); }
   Vec2 position(std::size_t j) const { return {x[j], y[j]}; }
@@ -79,7 +80,8 @@ struct WallParticles {
 /// The arrays of the walls that evaluations write.
 template <class W, class F>
 void for_each_wall_real(W& w, F&& f) {
-  f("wall_p", w.p), f("wall_sxx", w.sxx), f("wall_syy", w.syy), f("wall_sxy", w.sxy), f("wall_compression", w.compression);
+  f("wall_p", w.p), f("wall_sxx", w.sxx), f("wall_syy", w.syy), f("wall_sxy", w.sxy),
+      f("wall_compression", w.compression);
 }
 
 }  // namespace talus

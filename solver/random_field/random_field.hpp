@@ -11,7 +11,8 @@
 
 namespace talus {
 
-/// A standard Gaussian field Z(x) prepared for sampling: modes solved (Karhunen-Loeve) or spectrum known (circulant embedding).
+/// A standard Gaussian field Z(x) prepared for sampling: modes solved (Karhunen-Loeve) or spectrum known (circulant
+/// embedding).
 class RandomField {
  public:
   /// @param spec    what is wanted; `spec.domain` overrides `slide_box`
@@ -31,8 +32,8 @@ class RandomField {
   /// Variance of the values that gaussian() returns, averaged over the domain [-]: captured_variance() less what
   /// `cell_average` takes away; circulant embedding: on the nodes of its grid.
   double variance() const;
-  /// Coefficients of one realization: counter-based (Philox), keyed by (seed, realization, mode); never depend on anything
-  /// else. With `spec.xi`, those.
+  /// Coefficients of one realization: counter-based (Philox), keyed by (seed, realization, mode); never depend on
+  /// anything else. With `spec.xi`, those.
   std::vector<double> draw(std::uint64_t seed, std::uint64_t realization) const;
   /// The same with the `modes` leading coefficients (or all, if there are fewer) from a Latin hypercube sample of
   /// `realizations` realizations. Of use for Karhunen-Loeve, whose leading modes carry most; harmless else.

@@ -19,10 +19,10 @@ struct StopAtRest {
 
 /// When to stop and what to keep.
 struct TimeControl {
-  double end = 10.0;                     ///< [s], > 0
-  std::optional<double> fixed_step;      ///< constant time step [s]; unset: from the Courant number
-  std::optional<double> max_step;        ///< upper bound of the Courant step [s]
-  std::vector<double> snapshots;         ///< times [s], increasing, in [0, end]; start and end are always kept
+  double end = 10.0;                 ///< [s], > 0
+  std::optional<double> fixed_step;  ///< constant time step [s]; unset: from the Courant number
+  std::optional<double> max_step;    ///< upper bound of the Courant step [s]
+  std::vector<double> snapshots;     ///< times [s], increasing, in [0, end]; start and end are always kept
   std::optional<StopAtRest> stop_at_rest;
   bool operator==(const TimeControl&) const = default;
 };
@@ -34,7 +34,7 @@ struct Model {
   std::vector<Material> materials;  ///< at least one
   double dx = 0.1;                  ///< particle spacing [m], > 0
   Placement placement = Placement::cells;
-  Vec2 g{0.0, -9.81};               ///< gravity [m/s2]
+  Vec2 g{0.0, -9.81};  ///< gravity [m/s2]
   Rheology rheology;
   Numerics numerics;
   Walls walls;

@@ -14,7 +14,8 @@ namespace {
 /// Indices of the soil in order of id, so that sums and digests do not depend on how the particles are stored.
 std::vector<std::uint32_t> by_id(const Soil& soil) {
   std::vector<std::uint32_t> place(soil.size());
-  for (std::size_t i = 0; i < soil.size(); ++i) place[static_cast<std::size_t>(soil.id[i])] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < soil.size(); ++i)
+    place[static_cast<std::size_t>(soil.id[i])] = static_cast<std::uint32_t>(i);
   return place;
 }
 
@@ -22,8 +23,10 @@ std::vector<std::uint32_t> by_id(const Soil& soil) {
 double mass_front(const Soil& soil, double share) {
   std::vector<std::uint32_t> order(soil.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return soil.x[a] != soil.x[b] ? soil.x[a] > soil.x[b] : soil.id[a] < soil.id[b]; });
-  const double total = std::accumulate(order.begin(), order.end(), 0.0, [&](double s, auto i) { return s + soil.m[i]; });
+  std::sort(order.begin(), order.end(),
+            [&](auto a, auto b) { return soil.x[a] != soil.x[b] ? soil.x[a] > soil.x[b] : soil.id[a] < soil.id[b]; });
+  const double total =
+      std::accumulate(order.begin(), order.end(), 0.0, [&](double s, auto i) { return s + soil.m[i]; });
   double beyond = 0.0;
   for (const auto i : order) {
     beyond += soil.m[i];
@@ -99,8 +102,8 @@ double max_speed(const Soil& soil) {
 }
 
 Measures measure_fronts(const Soil& soil, double left, double dx) {
-  return {farthest(soil) - left, connected_front(soil, 1.5 * dx) - left, mass_front(soil, 0.01) - left, mass_front(soil, 0.001) - left,
-          centre_of_mass(soil).x - left};
+  return {farthest(soil) - left, connected_front(soil, 1.5 * dx) - left, mass_front(soil, 0.01) - left,
+          mass_front(soil, 0.001) - left, centre_of_mass(soil).x - left};
 }
 
 std::string digest(const Soil& soil) {
@@ -110,7 +113,9 @@ std::string digest(const Soil& soil) {
     for (int byte = 0; byte < 8; ++byte, bits >>= 8) hash = (hash ^ (bits & 0xff)) * 1099511628211ull;
   };
   for (const auto i : by_id(soil))
-    for (const double value : {soil.x[i], soil.y[i], soil.vx[i], soil.vy[i], soil.rho[i], soil.txx[i], soil.tyy[i], soil.txy[i]}) eat(value);
+    for (const double value :
+         {soil.x[i], soil.y[i], soil.vx[i], soil.vy[i], soil.rho[i], soil.txx[i], soil.tyy[i], soil.txy[i]})
+      eat(value);
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
   return text;

@@ -14,12 +14,18 @@ namespace {
 
 /// Way that a particle may go before all are sorted again [h]. Without lists of neighbours every search pays for it.
 constexpr double skin(bool lists) { return lists ? 0.3 : 0.1; }
-constexpr std::int64_t rest_interval = 20;          ///< steps between two looks at the rest rule
+constexpr std::int64_t rest_interval = 20;         ///< steps between two looks at the rest rule
 constexpr std::int64_t penetration_interval = 50;  ///< steps between two looks behind the walls
 
 FlowConstants flow_constants(const Model& model) {
   const double c_s = sound_speed(model);
-  return {model.numerics.h_over_dx * model.dx, model.dx, c_s, model.g, model.rheology, model.numerics, model.walls,
+  return {model.numerics.h_over_dx * model.dx,
+          model.dx,
+          c_s,
+          model.g,
+          model.rheology,
+          model.numerics,
+          model.walls,
           point_laws(model.materials, model.rheology, c_s)};
 }
 
@@ -27,13 +33,15 @@ FlowConstants flow_constants(const Model& model) {
 StepBounds step_bounds(const Model& model, const FlowConstants& k) {
   StepBounds bounds{model.numerics.cfl, k.h, k.c_s, 0.0};
   for (const PointLaw& law : k.laws) {
-    if (model.rheology.yield == Yield::elastic) bounds.c = std::max(bounds.c, std::sqrt(k.c_s * k.c_s + 4.0 / 3.0 * law.G / law.eos.rho0));
+    if (model.rheology.yield == Yield::elastic)
+      bounds.c = std::max(bounds.c, std::sqrt(k.c_s * k.c_s + 4.0 / 3.0 * law.G / law.eos.rho0));
     bounds.nu = std::max(bounds.nu, law.bingham.eta / law.eos.rho0);
   }
   return bounds;
 }
 
-Soil make_soil(const Model& model, const FlowConstants& k, const std::vector<SoilPoint>& points, const std::vector<double>& tan_phi) {
+Soil make_soil(const Model& model, const FlowConstants& k, const std::vector<SoilPoint>& points,
+               const std::vector<double>& tan_phi) {
   Soil soil;
   const auto make = [&](const char*, auto& array) { array.assign(points.size(), 0.0); };
   const bool vectorised = VectorisedFlow::serves(model.numerics);
@@ -78,11 +86,14 @@ ParticlePlan plan_particles(const Model& model) {
   const Polyline wall = wall_line(model.terrain, model.dx, model.placement);
   const double wall_estimate = model.walls.layers * wall.length() / model.dx;
   if (estimate + wall_estimate > static_cast<double>(model.max_particles))
-    throw ConfigError("/particle_spacing_m", "about " + std::to_string(static_cast<std::int64_t>(estimate + wall_estimate)) +
-                                                 " particles, more than the limit of " + std::to_string(model.max_particles) +
-                                                 " (max_particles); use a larger spacing");
-  ParticlePlan plan{fill_slide(model.slide, model.terrain, model.dx, model.placement), fill_walls(wall, model.dx, model.walls.layers)};
-  if (plan.soil.empty()) throw ConfigError("/particle_spacing_m", "no soil particle fits into the slide; use a smaller spacing");
+    throw ConfigError("/particle_spacing_m",
+                      "about " + std::to_string(static_cast<std::int64_t>(estimate + wall_estimate)) +
+                          " particles, more than the limit of " + std::to_string(model.max_particles) +
+                          " (max_particles); use a larger spacing");
+  ParticlePlan plan{fill_slide(model.slide, model.terrain, model.dx, model.placement),
+                    fill_walls(wall, model.dx, model.walls.layers)};
+  if (plan.soil.empty())
+    throw ConfigError("/particle_spacing_m", "no soil particle fits into the slide; use a smaller spacing");
   return plan;
 }
 
@@ -93,7 +104,9 @@ double fall_height(const Model& model) {
   return box.hi.y - lowest;
 }
 
-double sound_speed(const Model& model) { return model.numerics.c_s.value_or(10.0 * std::sqrt(2.0 * norm(model.g) * fall_height(model))); }
+double sound_speed(const Model& model) {
+  return model.numerics.c_s.value_or(10.0 * std::sqrt(2.0 * norm(model.g) * fall_height(model)));
+}
 
 double first_step(const Model& model) {
   if (model.time.fixed_step) return *model.time.fixed_step;
@@ -147,16 +160,18 @@ void Simulation::sort() {
   const auto order = soil_cells_.order();
   const auto apply = [&](const char*, auto& array) { permute(array, order, scratch_); };
   for_each_state(soil_, apply);
-  if (fast_) fast_->permute(order, scratch_);
-  else for_each_rate(soil_, apply);
+  if (fast_)
+    fast_->permute(order, scratch_);
+  else
+    for_each_rate(soil_, apply);
   permute(soil_.x_sorted, order, scratch_), permute(soil_.y_sorted, order, scratch_);
   permute(soil_.material, order, scratch_);
   permute(soil_.id, order, scratch_);
   moved_ = 0.0;
 }
 
-/// Lists that last a few steps of dt: a wider way makes them longer, a shorter one makes them often. The best of both grows with
-/// the root of a step's way; measured, see solver/sph/README.md.
+/// Lists that last a few steps of dt: a wider way makes them longer, a shorter one makes them often. The best of both
+/// grows with the root of a step's way; measured, see solver/sph/README.md.
 void Simulation::renew(double dt) {
   if (!fast_) return;
   const double h = rhs_.constants().h, step = dt * max_speed_, widest = skin(true) * h;
@@ -193,8 +208,10 @@ void Simulation::retire_departed(const Motion& motion) {
     const std::size_t last = --soil_.n_active;
     for_each_state(soil_, [&](const char*, auto& array) { std::swap(array[i], array[last]); });
     const auto exchange = [&](const char*, auto& array) { std::swap(array[i], array[last]); };
-    if (fast_) fast_->swap(i, last);
-    else for_each_rate(soil_, exchange), for_each_derived(soil_, exchange);
+    if (fast_)
+      fast_->swap(i, last);
+    else
+      for_each_rate(soil_, exchange), for_each_derived(soil_, exchange);
     std::swap(soil_.material[i], soil_.material[last]);
     std::swap(soil_.id[i], soil_.id[last]);
     moved_ = -1.0;
@@ -241,12 +258,14 @@ StageTimes Simulation::times() const {
 void Simulation::report_divergence(double fastest2) const {
   std::int32_t bad = std::numeric_limits<std::int32_t>::max();
   for (std::size_t i = 0; i < soil_.n_active; ++i) {
-    const bool sound = std::isfinite(norm2(soil_.position(i)) + soil_.rho[i]) && soil_.rho[i] > 0.0 && norm2(soil_.velocity(i)) < fastest2;
+    const bool sound = std::isfinite(norm2(soil_.position(i)) + soil_.rho[i]) && soil_.rho[i] > 0.0 &&
+                       norm2(soil_.velocity(i)) < fastest2;
     if (!sound) bad = std::min(bad, soil_.id[i]);
   }
   const Vec2 start = origin(bad);
-  throw DivergedError("the run diverged at step " + std::to_string(steps_) + ", time " + std::to_string(time_) + " s: particle " +
-                          std::to_string(bad) + ", which started at (" + std::to_string(start.x) + ", " + std::to_string(start.y) +
+  throw DivergedError("the run diverged at step " + std::to_string(steps_) + ", time " + std::to_string(time_) +
+                          " s: particle " + std::to_string(bad) + ", which started at (" + std::to_string(start.x) +
+                          ", " + std::to_string(start.y) +
                           ") m, is no longer finite or faster than 10 times sound; try a smaller time step",
                       steps_, time_, bad);
 }
@@ -259,7 +278,8 @@ Motion Simulation::plain_motion() const {
     m.acceleration = std::max(m.acceleration, norm({soil_.ax[i], soil_.ay[i]}));
     m.speed = std::max(m.speed, norm(soil_.velocity(i))), m.moved = std::max(m.moved, norm(soil_.position(i) - sorted));
     m.leftmost = std::min(m.leftmost, soil_.x[i]), m.rightmost = std::max(m.rightmost, soil_.x[i]);
-    m.sound = m.sound && std::isfinite(norm2(soil_.position(i)) + norm2(soil_.velocity(i)) + soil_.rho[i]) && soil_.rho[i] > 0.0;
+    m.sound = m.sound && std::isfinite(norm2(soil_.position(i)) + norm2(soil_.velocity(i)) + soil_.rho[i]) &&
+              soil_.rho[i] > 0.0;
   }
   return m;
 }
@@ -271,13 +291,16 @@ void Simulation::filter_density() {
 
 /// Finite and plausible? Then the extremes for the next step and the rest rule are brought up to date.
 void Simulation::check(const Motion& motion) {
-  if (const double fastest = 10.0 * bounds_.c; !motion.sound || !(motion.speed < fastest)) report_divergence(fastest * fastest);
+  if (const double fastest = 10.0 * bounds_.c; !motion.sound || !(motion.speed < fastest))
+    report_divergence(fastest * fastest);
   max_speed_ = motion.speed, max_acceleration_ = motion.acceleration, moved_ = motion.moved;
   travelled_ += motion.way;
   peak_speed_ = std::max(peak_speed_, max_speed_);
   if (model_.time.stop_at_rest && steps_ % rest_interval == 0) {
-    if (rms_speed(soil_) >= model_.time.stop_at_rest->speed) slow_since_ = -1.0;
-    else if (slow_since_ < 0.0) slow_since_ = time_;
+    if (rms_speed(soil_) >= model_.time.stop_at_rest->speed)
+      slow_since_ = -1.0;
+    else if (slow_since_ < 0.0)
+      slow_since_ = time_;
   }
 }
 
@@ -328,7 +351,8 @@ Frame Simulation::frame() const {
   const Soil& derived = fast_ ? unpacked : soil_;
   for (std::size_t i = 0; i < soil_.size(); ++i) {
     const auto k = static_cast<std::size_t>(soil_.id[i]);
-    f.position[k] = soil_.position(i), f.displacement[k] = soil_.position(i) - origin(soil_.id[i]), f.velocity[k] = soil_.velocity(i);
+    f.position[k] = soil_.position(i), f.displacement[k] = soil_.position(i) - origin(soil_.id[i]),
+    f.velocity[k] = soil_.velocity(i);
     f.density[k] = soil_.rho[i], f.pressure[k] = derived.p[i];
     f.phi[k] = std::atan(soil_.tan_phi[i]), f.shear_rate[k] = derived.gamma_dot[i];
     const Sym2 s = derived.stress(i);
@@ -336,7 +360,8 @@ Frame Simulation::frame() const {
   }
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const std::size_t k = soil_.size() + w;
-    f.position[k] = walls_.position(w), f.density[k] = model_.materials.front().rho0 * std::max(1.0, walls_.compression[w]);
+    f.position[k] = walls_.position(w),
+    f.density[k] = model_.materials.front().rho0 * std::max(1.0, walls_.compression[w]);
     f.pressure[k] = walls_.p[w];
     f.stress[k] = {walls_.sxx[w], walls_.syy[w], -3.0 * walls_.p[w] - walls_.sxx[w] - walls_.syy[w], walls_.sxy[w]};
   }
@@ -363,7 +388,8 @@ State Simulation::state() const {
 void Simulation::restore(const State& state) {
   const auto take = [&](const auto& map, const std::string& name, std::size_t n) -> const auto& {
     const auto it = map.find(name);
-    if (it == map.end() || it->second.size() != n) throw IoError("the checkpoint does not belong to this case: '" + name + "' differs");
+    if (it == map.end() || it->second.size() != n)
+      throw IoError("the checkpoint does not belong to this case: '" + name + "' differs");
     return it->second;
   };
   const auto load = [&](const char* name, auto& array) {
@@ -377,7 +403,8 @@ void Simulation::restore(const State& state) {
   if (fast_) fast_->pack(unpacked);
   for_each_wall_real(walls_, [&](const char* name, auto& array) { array = take(state.reals, name, array.size()); });
   const auto& scalars = take(state.reals, "scalars", 6);
-  time_ = scalars[0], peak_speed_ = scalars[1], max_speed_ = scalars[2], max_acceleration_ = scalars[3], slow_since_ = scalars[4];
+  time_ = scalars[0], peak_speed_ = scalars[1], max_speed_ = scalars[2], max_acceleration_ = scalars[3],
+  slow_since_ = scalars[4];
   moved_ = scalars[5];
   const auto& material = take(state.integers, "material", soil_.size());
   const auto& id = take(state.integers, "id", soil_.size());

@@ -27,7 +27,8 @@ struct ParticlePlan {
 /// @throws ConfigError when there is no soil particle, or more particles than Model::max_particles
 ParticlePlan plan_particles(const Model& model);
 
-/// Fall height H [m]: highest point of the slide over the lowest point of bed and slide; sets the scale sqrt(2 g H) of speed.
+/// Fall height H [m]: highest point of the slide over the lowest point of bed and slide; sets the scale sqrt(2 g H) of
+/// speed.
 double fall_height(const Model& model);
 /// c_s of the model, 10 sqrt(2 g H) unless given [m/s].
 double sound_speed(const Model& model);
@@ -36,7 +37,8 @@ double first_step(const Model& model);
 
 class Simulation {
  public:
-  /// @param tan_phi  tangent of the friction angle of each soil particle of `plan`, in its order; empty: that of the material
+  /// @param tan_phi  tangent of the friction angle of each soil particle of `plan`, in its order; empty: that of the
+  /// material
   Simulation(const Model& model, const ParticlePlan& plan, std::vector<double> tan_phi = {});
 
   double time() const { return time_; }
@@ -90,18 +92,18 @@ class Simulation {
   RightHandSide rhs_;
   Soil soil_;
   WallParticles walls_;
-  std::optional<VectorisedFlow> fast_;     ///< unset: rhs_ evaluates
+  std::optional<VectorisedFlow> fast_;  ///< unset: rhs_ evaluates
   CellList soil_cells_, wall_cells_;
   StepStart start_;
   FixedPoint origin_box_;
   std::vector<std::array<std::int32_t, 2>> origin_;  ///< starting position by id [quanta of origin_box_]
-  std::vector<std::uint8_t> penetrated_;   ///< by id: ever seen behind the wall
+  std::vector<std::uint8_t> penetrated_;             ///< by id: ever seen behind the wall
   std::vector<double> scratch_;
   StepBounds bounds_;
   double time_ = 0.0, peak_speed_ = 0.0, max_speed_ = 0.0, max_acceleration_ = 0.0;
-  double moved_ = -1.0;                    ///< largest displacement since the last sort [m]; < 0: sort before the next step
-  double way_ = 0.0, travelled_ = 0.0;     ///< that the lists of neighbours allow, and that may have been gone since [m]
-  double slow_since_ = -1.0;               ///< time since when the slide has been slower than the rest speed; < 0: it is not
+  double moved_ = -1.0;  ///< largest displacement since the last sort [m]; < 0: sort before the next step
+  double way_ = 0.0, travelled_ = 0.0;  ///< that the lists of neighbours allow, and that may have been gone since [m]
+  double slow_since_ = -1.0;  ///< time since when the slide has been slower than the rest speed; < 0: it is not
   double height_ = 0.0;
   std::int64_t steps_ = 0, evaluations_ = 0;
   StageTimes times_;

@@ -1,7 +1,7 @@
 #pragma once
-// Neighbours of clusters: as many particles as a vector has lanes, close to each other, share one list of the particles that
-// may come near any of them (after Pall & Hess 2013). One vector then holds one value of all particles of a cluster, and each
-// particle sums its neighbours in ascending order whatever the width of the vector.
+// Neighbours of clusters: as many particles as a vector has lanes, close to each other, share one list of the particles
+// that may come near any of them (after Pall & Hess 2013). One vector then holds one value of all particles of a
+// cluster, and each particle sums its neighbours in ascending order whatever the width of the vector.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +17,8 @@ std::vector<std::uint32_t> clusters(const CellList& cells, std::size_t lanes);
 
 /// For each cluster the places of the particles to sum over, ascending.
 struct ClusterList {
-  static constexpr std::size_t chunk_size = 32;  ///< clusters whose lists a thread makes at a time, one after the other in memory
+  static constexpr std::size_t chunk_size =
+      32;  ///< clusters whose lists a thread makes at a time, one after the other in memory
   /// Each list is filled up to a multiple of it with a place where nothing is, and so many more stand behind the last.
   static constexpr std::size_t block = 2;
 

@@ -6,9 +6,10 @@
 namespace talus {
 
 /// delta-SPH diffusion with the hydrostatic part taken out (Antuono 2010; Fourtakas 2019, linearised):
-/// drho_i/dt += 2 delta h c_s sum_j V_j (rho_j - rho_i - rho_ij^H) (r_ji . grad_i W_ij)/r^2, rho_ij^H = rho0 g.r_ji/c_s^2.
-/// Term of one neighbour without the leading 2 delta h c_s. With grad_i W = F r_ij it is -V_j F times the dynamic difference.
-/// Linearising the hydrostatic density costs a relative (chi - 1) p/(chi B), below 1 % of a difference that is itself below 1 %.
+/// drho_i/dt += 2 delta h c_s sum_j V_j (rho_j - rho_i - rho_ij^H) (r_ji . grad_i W_ij)/r^2, rho_ij^H = rho0
+/// g.r_ji/c_s^2. Term of one neighbour without the leading 2 delta h c_s. With grad_i W = F r_ij it is -V_j F times the
+/// dynamic difference. Linearising the hydrostatic density costs a relative (chi - 1) p/(chi B), below 1 % of a
+/// difference that is itself below 1 %.
 constexpr double diffusion_term(double V_j, double rho_ji, double rho0, Vec2 g, double c_s, Vec2 r_ij, double F) {
   const double hydrostatic = -rho0 * dot(g, r_ij) / (c_s * c_s);
   return -V_j * (rho_ji - hydrostatic) * F;

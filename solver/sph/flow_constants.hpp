@@ -14,9 +14,9 @@ namespace talus {
 /// What the law of a point needs to know of its material.
 struct PointLaw {
   EquationOfState eos;
-  double c;         ///< cohesion [Pa]
+  double c;  ///< cohesion [Pa]
   Bingham bingham;
-  double G;         ///< numerical shear modulus of the elastic law [Pa]
+  double G;  ///< numerical shear modulus of the elastic law [Pa]
 };
 
 /// Constants of a run that every pair sees.

@@ -1,5 +1,6 @@
 #pragma once
-// Smoothing kernels of support 2h in two dimensions. W(r) [1/m2] and F(r) = W'(r)/r [1/m4], so that grad_i W_ij = F r_ij.
+// Smoothing kernels of support 2h in two dimensions. W(r) [1/m2] and F(r) = W'(r)/r [1/m4], so that grad_i W_ij = F
+// r_ij.
 
 #include <cmath>
 #include <numbers>
@@ -11,7 +12,7 @@ namespace talus {
 /// Cubic B-spline, Monaghan & Lattanzio 1985: sigma (2/3 - q^2 + q^3/2) for q < 1, sigma/6 (2 - q)^3 for q < 2,
 /// sigma = 15/(7 pi h^2), q = r/h.
 struct CubicSpline {
-  double h;             ///< smoothing length [m], > 0
+  double h;  ///< smoothing length [m], > 0
   double inverse_h = 1.0 / h;
   double sigma = 15.0 / (7.0 * std::numbers::pi * h * h);
   double sigma_h2 = sigma / (h * h);
@@ -33,7 +34,7 @@ struct CubicSpline {
 
 /// Wendland C2 (Wendland 1995): sigma (1 - q/2)^4 (2q + 1), sigma = 7/(4 pi h^2), q = r/h < 2.
 struct WendlandC2 {
-  double h;             ///< smoothing length [m], > 0
+  double h;  ///< smoothing length [m], > 0
   double inverse_h = 1.0 / h;
   double sigma = 7.0 / (4.0 * std::numbers::pi * h * h);
   double sigma_h2 = sigma / (h * h);

@@ -1,4 +1,5 @@
-// Vectors of the pair loops. Included once for every instruction set (Highway's foreach_target), hence the toggled guard.
+// Vectors of the pair loops. Included once for every instruction set (Highway's foreach_target), hence the toggled
+// guard.
 
 #if defined(TALUS_SPH_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TALUS_SPH_LANES_INL
@@ -58,7 +59,8 @@ HWY_INLINE void add_doubles(V v, double* HWY_RESTRICT to, std::size_t count) {
   const Doubles dd;
   if (count == lanes) {
     hn::StoreU(hn::Add(hn::LoadU(dd, to), hn::PromoteTo(dd, hn::LowerHalf(v))), dd, to);
-    hn::StoreU(hn::Add(hn::LoadU(dd, to + lanes / 2), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), v))), dd, to + lanes / 2);
+    hn::StoreU(hn::Add(hn::LoadU(dd, to + lanes / 2), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), v))), dd,
+               to + lanes / 2);
     return;
   }
   HWY_ALIGN float buffer[lanes];
@@ -77,7 +79,8 @@ HWY_INLINE void store(V v, float* HWY_RESTRICT to, std::size_t count) {
   for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
 }
 
-/// Reads the first `count` groups of four at `from`, and no more: those behind may be another thread's. The other lanes are zero.
+/// Reads the first `count` groups of four at `from`, and no more: those behind may be another thread's. The other lanes
+/// are zero.
 HWY_INLINE void load_groups(const float* HWY_RESTRICT from, std::size_t count, V& a, V& b, V& c, V& d) {
   HWY_ALIGN float buffer[4 * lanes] = {};
   if (count < lanes) {

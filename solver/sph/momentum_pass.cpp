@@ -15,13 +15,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
-/// rho_i rho_j Pi_ij = (rho_i rho_j/rho_mean) mu (beta mu - alpha c_s), mu = h v.r/(r^2 + 0.01 h^2); see sph/artificial_viscosity.hpp.
+/// rho_i rho_j Pi_ij = (rho_i rho_j/rho_mean) mu (beta mu - alpha c_s), mu = h v.r/(r^2 + 0.01 h^2); see
+/// sph/artificial_viscosity.hpp.
 template <bool Quadratic>
 struct Viscous {
   V rho, h_rho, alpha_c, beta, h, soft;  ///< h and 0.01 h^2 in quanta
 
   Viscous(const FlowConstants& k, double quantum)
-      : alpha_c(set(-k.numerics.alpha * k.c_s)), beta(set(k.numerics.beta)), h(set(k.h / quantum)), soft(set(0.01 * k.h * k.h / (quantum * quantum))) {}
+      : alpha_c(set(-k.numerics.alpha * k.c_s)),
+        beta(set(k.numerics.beta)),
+        h(set(k.h / quantum)),
+        soft(set(0.01 * k.h * k.h / (quantum * quantum))) {}
 
   /// Chooses the particles i.
   HWY_INLINE void of(V rho_i) {
@@ -45,7 +49,8 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Chunk cluster
   Viscous<Quadratic> viscous(k, f.fixed.quantum);
   const V quantum = set(f.fixed.quantum), b_max = set(k.walls.b_max), zero = hn::Zero(d), volume_w = set(k.dx * k.dx);
   const V to_force = set(-sigma_h2(k) * f.fixed.quantum), gx = set(k.g.x), gy = set(k.g.y);
-  const bool only_approaching = k.walls.contact == WallContact::approaching, smooth = k.walls.slip == WallSlip::free_slip;
+  const bool only_approaching = k.walls.contact == WallContact::approaching,
+             smooth = k.walls.slip == WallSlip::free_slip;
   for (std::size_t c = clusters.begin; c < clusters.end; ++c) {
     const std::size_t i = f.soil_clusters[c], count = f.soil_clusters[c + 1] - i;
     V X, Y, vx, vy, volume, q, rho, material, sxx, syy, sxy, p;
@@ -55,7 +60,8 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Chunk cluster
     viscous.of(rho);
     V sum_x = zero, sum_y = zero;  // of V_j (s_i + s_j - rho_i rho_j Pi) r_ij F
     const auto add_force = [&](const float* stress, V Pi, V VF, V x, V y) HWY_ATTR {
-      const V xx = hn::Sub(hn::Add(sxx, set(stress[0])), Pi), yy = hn::Sub(hn::Add(syy, set(stress[1])), Pi), xy = hn::Add(sxy, set(stress[2]));
+      const V xx = hn::Sub(hn::Add(sxx, set(stress[0])), Pi), yy = hn::Sub(hn::Add(syy, set(stress[1])), Pi),
+              xy = hn::Add(sxy, set(stress[2]));
       sum_x = hn::MulAdd(VF, hn::MulAdd(xx, x, hn::Mul(xy, y)), sum_x);
       sum_y = hn::MulAdd(VF, hn::MulAdd(xy, x, hn::Mul(yy, y)), sum_y);
     };
@@ -100,8 +106,10 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Chunk cluster
 
 void momentum_dispatch(PackedFlow& f, const FlowConstants& k, Chunk clusters) {
   with_kernel(k, [&]<class Kernel>(Kernel*) {
-    if (k.numerics.beta > 0.0) momentum_loop<Kernel, true>(f, k, clusters);
-    else momentum_loop<Kernel, false>(f, k, clusters);
+    if (k.numerics.beta > 0.0)
+      momentum_loop<Kernel, true>(f, k, clusters);
+    else
+      momentum_loop<Kernel, false>(f, k, clusters);
   });
 }
 
@@ -113,7 +121,9 @@ namespace talus {
 
 HWY_EXPORT(momentum_dispatch);
 
-void momentum_pass(PackedFlow& f, const FlowConstants& k, Chunk clusters) { HWY_DYNAMIC_DISPATCH(momentum_dispatch)(f, k, clusters); }
+void momentum_pass(PackedFlow& f, const FlowConstants& k, Chunk clusters) {
+  HWY_DYNAMIC_DISPATCH(momentum_dispatch)(f, k, clusters);
+}
 
 }  // namespace talus
 #endif

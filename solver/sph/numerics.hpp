@@ -5,15 +5,15 @@
 
 namespace talus {
 
-enum class ShearRate { consistent, paper };             ///< sqrt(2 dev:dev) | sqrt(2/3 dev:dev), [Z20] Eq. 7 as printed
-enum class Yield { elastic, regularized };              ///< elasto-viscoplastic | equivalent viscosity, [Z20] Eq. 6
-enum class WallContact { always, approaching };         ///< approaching: a wall acts only where v_ij . x_ij < 0, [Z20] 2.1
-enum class WallSlip { no_slip, friction, free_slip };   ///< friction: the soil's own, or a smaller angle of the wall
+enum class ShearRate { consistent, paper };      ///< sqrt(2 dev:dev) | sqrt(2/3 dev:dev), [Z20] Eq. 7 as printed
+enum class Yield { elastic, regularized };       ///< elasto-viscoplastic | equivalent viscosity, [Z20] Eq. 6
+enum class WallContact { always, approaching };  ///< approaching: a wall acts only where v_ij . x_ij < 0, [Z20] 2.1
+enum class WallSlip { no_slip, friction, free_slip };  ///< friction: the soil's own, or a smaller angle of the wall
 enum class KernelShape { wendland_c2, cubic_spline };
 enum class DensityFilter { delta_sph, shepard, none };
 enum class Integrator { rk2, leapfrog };
-enum class Continuity { volume, mass };                 ///< rho_i sum V_j | sum m_j, [Z20] Eq. 1; equal where density is uniform
-enum class Precision { single, full };                   ///< of the soil-soil pair sums; the state is double in both
+enum class Continuity { volume, mass };  ///< rho_i sum V_j | sum m_j, [Z20] Eq. 1; equal where density is uniform
+enum class Precision { single, full };   ///< of the soil-soil pair sums; the state is double in both
 enum class InitialPressure { hydrostatic, stress_free };
 
 /// How the soil yields.
@@ -27,24 +27,25 @@ struct Rheology {
 
 /// How the equations are discretised.
 struct Numerics {
-  /// Wendland's kernel keeps particles from pairing and allows a wide support; with it replicate runs stay together at fine spacings too:
-  /// on the illustrative slope at dx = 0.1 m the front's noise is 4.5 mm, against 32 mm with the cubic spline and h = 1.2 dx.
+  /// Wendland's kernel keeps particles from pairing and allows a wide support; with it replicate runs stay together at
+  /// fine spacings too: on the illustrative slope at dx = 0.1 m the front's noise is 4.5 mm, against 32 mm with the
+  /// cubic spline and h = 1.2 dx.
   KernelShape kernel = KernelShape::wendland_c2;
-  double h_over_dx = 1.5;                ///< smoothing length over particle spacing [-], in [1, 2]
-  std::optional<double> c_s;             ///< speed of sound [m/s], > 0; unset: 10 sqrt(2 g H)
-  double alpha = 0.1;                    ///< artificial viscosity, linear term [-], >= 0
-  double beta = 0.0;                     ///< artificial viscosity, quadratic term [-], >= 0
+  double h_over_dx = 1.5;     ///< smoothing length over particle spacing [-], in [1, 2]
+  std::optional<double> c_s;  ///< speed of sound [m/s], > 0; unset: 10 sqrt(2 g H)
+  double alpha = 0.1;         ///< artificial viscosity, linear term [-], >= 0
+  double beta = 0.0;          ///< artificial viscosity, quadratic term [-], >= 0
   Continuity continuity = Continuity::volume;
-  /// The diffusion leaves a resting pile alone and keeps replicate runs together: on the illustrative slope at dx = 0.4 m a
-  /// change of tan(phi) by 1e-6 moves the front by 6e-5 m with it and by 0.018 m with the Shepard filter.
+  /// The diffusion leaves a resting pile alone and keeps replicate runs together: on the illustrative slope at dx = 0.4
+  /// m a change of tan(phi) by 1e-6 moves the front by 6e-5 m with it and by 0.018 m with the Shepard filter.
   DensityFilter density_filter = DensityFilter::delta_sph;
-  int filter_interval = 30;              ///< steps between two Shepard filters, >= 1
-  double delta = 0.1;                    ///< coefficient of the delta-SPH diffusion [-], >= 0
-  bool tension_cutoff = true;            ///< negative pressure is cut to zero
+  int filter_interval = 30;    ///< steps between two Shepard filters, >= 1
+  double delta = 0.1;          ///< coefficient of the delta-SPH diffusion [-], >= 0
+  bool tension_cutoff = true;  ///< negative pressure is cut to zero
   InitialPressure initial_pressure = InitialPressure::hydrostatic;
   Integrator integrator = Integrator::rk2;
   Precision precision = Precision::single;
-  double cfl = 0.4;                      ///< Courant number [-], in (0, 1]
+  double cfl = 0.4;  ///< Courant number [-], in (0, 1]
   bool operator==(const Numerics&) const = default;
 };
 

@@ -86,18 +86,20 @@ struct Packer {
         mass(each(f.mass.value_or(0.0))),
         one_mass(f.mass) {}
 
-  HWY_INLINE void pack(PackedFlow& f, const FlowConstants& k, const Soil& soil, const StateV& s, std::size_t i, std::size_t count) const {
+  HWY_INLINE void pack(PackedFlow& f, const FlowConstants& k, const Soil& soil, const StateV& s, std::size_t i,
+                       std::size_t count) const {
     const D d;
     HWY_ALIGN double rho0[lanes];
     HWY_ALIGN float material[lanes] = {};
     std::fill_n(rho0, lanes, k.laws[0].eos.rho0);
     if (k.laws.size() > 1)
       for (std::size_t l = 0; l < count; ++l)
-        material[l] = static_cast<float>(soil.material[i + l]), rho0[l] = k.laws[static_cast<std::size_t>(soil.material[i + l])].eos.rho0;
+        material[l] = static_cast<float>(soil.material[i + l]),
+        rho0[l] = k.laws[static_cast<std::size_t>(soil.material[i + l])].eos.rho0;
     const Wide q = s.rho / load(rho0, lanes) - each(1.0);
     const Wide hydrostatic = gx * (s.x - each(f.fixed.lo.x)) + gy * (s.y - each(f.fixed.lo.y));
-    store_groups(fixed_point(s.x, f.fixed.lo.x, per_quantum), fixed_point(s.y, f.fixed.lo.y, per_quantum), narrow(s.vx), narrow(s.vy),
-                 f.soil.motion.data() + 4 * i, count);
+    store_groups(fixed_point(s.x, f.fixed.lo.x, per_quantum), fixed_point(s.y, f.fixed.lo.y, per_quantum), narrow(s.vx),
+                 narrow(s.vy), f.soil.motion.data() + 4 * i, count);
     const Wide m = one_mass ? mass : load(soil.m.data() + i, count);
     store_groups(narrow(m / s.rho), narrow(q - hydrostatic), narrow(s.rho), hn::Load(d, material),
                  f.soil.density.data() + 4 * i, count);
@@ -121,12 +123,14 @@ HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& 
   }
 }
 
-HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double step, bool middle, Chunk chunk) {
+HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double step, bool middle,
+                               Chunk chunk) {
   const D d;
   const Packer packer(f, k);
   const Wide dt = each(step), half = each(0.5), zero = each(0.0);
   V way2 = hn::Zero(d), acceleration2 = hn::Zero(d);
-  Wide speed2 = zero, moved2 = zero, lightest = each(1e300), unsound = zero, leftmost = each(1e300), rightmost = each(-1e300);
+  Wide speed2 = zero, moved2 = zero, lightest = each(1e300), unsound = zero, leftmost = each(1e300),
+       rightmost = each(-1e300);
   for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
     const std::size_t count = std::min(chunk.end - i, lanes);
     const V ax = hn::LoadU(d, f.soil.ax.data() + i), ay = hn::LoadU(d, f.soil.ay.data() + i);
@@ -136,9 +140,8 @@ HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil
       store(to, array.data() + i, count);
       return to;
     };
-    const auto move_with = [&](std::vector<double>& array, const std::vector<float>& rate) HWY_ATTR {
-      return move(array, wide(hn::LoadU(d, rate.data() + i)));
-    };
+    const auto move_with = [&](std::vector<double>& array, const std::vector<float>& rate)
+                               HWY_ATTR { return move(array, wide(hn::LoadU(d, rate.data() + i))); };
     StateV s;
     const Wide old_vx = state(soil.vx), old_vy = state(soil.vy);
     s.vx = move(soil.vx, wide(ax)), s.vy = move(soil.vy, wide(ay));
@@ -177,9 +180,15 @@ HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil
     leftmost = min(leftmost, s.x), rightmost = max(rightmost, s.x);
     unsound = unsound + zero * (speed2_i + moved2_i + s.rho);  // stays zero unless something is not finite
   }
-  const auto root = [&](V squares) HWY_ATTR { return std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, squares)))); };
-  return {step * root(way2), root(acceleration2), std::sqrt(largest(speed2)), std::sqrt(largest(moved2)), smallest(leftmost),
-          largest(rightmost), total(unsound) == 0.0 && smallest(lightest) > 0.0};
+  const auto root = [&](V squares)
+                        HWY_ATTR { return std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, squares)))); };
+  return {step * root(way2),
+          root(acceleration2),
+          std::sqrt(largest(speed2)),
+          std::sqrt(largest(moved2)),
+          smallest(leftmost),
+          largest(rightmost),
+          total(unsound) == 0.0 && smallest(lightest) > 0.0};
 }
 
 }  // namespace talus::HWY_NAMESPACE
@@ -202,11 +211,13 @@ Motion move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, b
 void pack_walls(PackedFlow& f, const WallParticles& walls) {
   // Walls beyond the fixed point's box are too far from any soil to matter.
   const auto fixed = [&](double x, double lo) {
-    return std::bit_cast<float>(static_cast<std::int32_t>(std::clamp((x - lo) / f.fixed.quantum, 0.0, double{1 << 30})));
+    return std::bit_cast<float>(
+        static_cast<std::int32_t>(std::clamp((x - lo) / f.fixed.quantum, 0.0, double{1 << 30})));
   };
   for (std::size_t w = 0; w < walls.size(); ++w) {
     f.walls.place[4 * w] = fixed(walls.x[w], f.fixed.lo.x), f.walls.place[4 * w + 1] = fixed(walls.y[w], f.fixed.lo.y);
-    f.walls.place[4 * w + 2] = static_cast<float>(walls.nx[w]), f.walls.place[4 * w + 3] = static_cast<float>(walls.ny[w]);
+    f.walls.place[4 * w + 2] = static_cast<float>(walls.nx[w]),
+                          f.walls.place[4 * w + 3] = static_cast<float>(walls.ny[w]);
     f.walls.stress[4 * w + 3] = static_cast<float>(walls.depth[w]);
   }
 }

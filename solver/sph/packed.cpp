@@ -11,7 +11,8 @@ constexpr std::size_t padding = 16;  ///< particles behind the last
 }
 
 FixedPoint FixedPoint::covering(Box box, double h) {
-  return {{box.lo.x - 4.0 * h, box.lo.y - 4.0 * h}, (std::max(box.width(), box.height()) + 8.0 * h) / static_cast<double>(1 << 30)};
+  return {{box.lo.x - 4.0 * h, box.lo.y - 4.0 * h},
+          (std::max(box.width(), box.height()) + 8.0 * h) / static_cast<double>(1 << 30)};
 }
 
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
-// Particles as the vectorised pair loops read them: single precision, four values a group so that a neighbour is one or two
-// cache lines, positions as fixed point so that differences of neighbours are exact however large the terrain.
+// Particles as the vectorised pair loops read them: single precision, four values a group so that a neighbour is one or
+// two cache lines, positions as fixed point so that differences of neighbours are exact however large the terrain.
 
 #include <cstdint>
 #include <vector>
@@ -23,8 +23,8 @@ struct FixedPoint {
   static FixedPoint covering(Box box, double h);
 };
 
-/// Place n, one behind the last of n particles, is far from everything and has no volume; so are some more, so that whole
-/// vectors can be loaded from anywhere. Integers are kept as bit patterns of floats.
+/// Place n, one behind the last of n particles, is far from everything and has no volume; so are some more, so that
+/// whole vectors can be loaded from anywhere. Integers are kept as bit patterns of floats.
 struct PackedSoil {
   std::vector<float> motion;   ///< x, y [quantum, as integers], vx, vy [m/s]
   std::vector<float> density;  ///< m/rho [m2], rho/rho0 - 1 less its hydrostatic part [-], rho [kg/m3], material
@@ -46,8 +46,8 @@ void for_each_packed_rate(P& s, F&& f) {
 }
 
 struct PackedWalls {
-  std::vector<float> place;    ///< x, y [quantum, as integers], nx, ny [-]
-  std::vector<float> stress;   ///< sxx, syy, sxy [Pa], depth [m]
+  std::vector<float> place;   ///< x, y [quantum, as integers], nx, ny [-]
+  std::vector<float> stress;  ///< sxx, syy, sxy [Pa], depth [m]
   void resize(std::size_t n);
 };
 

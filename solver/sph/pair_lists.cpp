@@ -37,22 +37,27 @@ inline void make_room(std::vector<std::uint32_t>& places, std::size_t n) {
   places.resize(n + n / 16);
 }
 
-HWY_ATTR void list_chunk(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets, const CellList& cells,
-                         std::span<const float> sources, double distance, double moved, std::uint32_t nowhere, std::size_t chunk, ClusterList& list) {
+HWY_ATTR void list_chunk(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets,
+                         const CellList& cells, std::span<const float> sources, double distance, double moved,
+                         std::uint32_t nowhere, std::size_t chunk, ClusterList& list) {
   const D d;
   const DI di;
   ClusterList::Chunk& out = list.chunks[chunk];
   const double reach = distance / fixed.quantum;
   const V reach2 = set(1.00001 * reach * reach), zero = hn::Zero(d);
-  const std::size_t begin = chunk * ClusterList::chunk_size, end = std::min(begin + ClusterList::chunk_size, first.size() - 1);
+  const std::size_t begin = chunk * ClusterList::chunk_size,
+                    end = std::min(begin + ClusterList::chunk_size, first.size() - 1);
   std::size_t used = 0;
   for (std::size_t c = begin; c < end; ++c) {
     out.at[c - begin] = static_cast<std::uint32_t>(used);
     const BoxI box = box_of(targets.data() + 4 * first[c], first[c + 1] - first[c]);
-    const auto metres = [&](double x, double y) { return Vec2{fixed.lo.x + fixed.quantum * x, fixed.lo.y + fixed.quantum * y}; };
+    const auto metres = [&](double x, double y) {
+      return Vec2{fixed.lo.x + fixed.quantum * x, fixed.lo.y + fixed.quantum * y};
+    };
     const double search = reach + moved / fixed.quantum + 1.0;
     const Box region{metres(box.x_lo - search, box.y_lo - search), metres(box.x_hi + search, box.y_hi + search)};
-    const VI x_lo = hn::Set(di, box.x_lo), x_hi = hn::Set(di, box.x_hi), y_lo = hn::Set(di, box.y_lo), y_hi = hn::Set(di, box.y_hi);
+    const VI x_lo = hn::Set(di, box.x_lo), x_hi = hn::Set(di, box.x_hi), y_lo = hn::Set(di, box.y_lo),
+             y_hi = hn::Set(di, box.y_hi);
     cells.for_ranges(region, [&](std::size_t from, std::size_t to) HWY_ATTR {
       make_room(out.places, used + (to - from) + 2 * lanes);
       for (std::size_t j = from; j < to; j += lanes) {
@@ -65,7 +70,8 @@ HWY_ATTR void list_chunk(const FixedPoint& fixed, std::span<const std::uint32_t>
         if (to - j < lanes) near = hn::And(near, hn::FirstN(d, to - j));
         // A compressing store to memory is slow on some processors; a whole vector fits behind the end.
         const auto chosen = hn::RebindMask(di, near);
-        hn::StoreU(hn::Compress(hn::Iota(di, static_cast<std::int32_t>(j)), chosen), di, reinterpret_cast<std::int32_t*>(out.places.data() + used));
+        hn::StoreU(hn::Compress(hn::Iota(di, static_cast<std::int32_t>(j)), chosen), di,
+                   reinterpret_cast<std::int32_t*>(out.places.data() + used));
         used += hn::CountTrue(di, chosen);
       }
     });
@@ -74,7 +80,8 @@ HWY_ATTR void list_chunk(const FixedPoint& fixed, std::span<const std::uint32_t>
   }
   make_room(out.places, used + ClusterList::block);
   for (std::size_t b = 0; b < ClusterList::block; ++b) out.places[used + b] = nowhere;
-  for (std::size_t c = end; c <= begin + ClusterList::chunk_size; ++c) out.at[c - begin] = static_cast<std::uint32_t>(used);
+  for (std::size_t c = end; c <= begin + ClusterList::chunk_size; ++c)
+    out.at[c - begin] = static_cast<std::uint32_t>(used);
 }
 
 std::size_t lanes_in_use() { return lanes; }
@@ -90,8 +97,9 @@ HWY_EXPORT(lanes_in_use);
 
 std::size_t cluster_size() { return HWY_DYNAMIC_DISPATCH(lanes_in_use)(); }
 
-void list_neighbours(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets, const CellList& cells,
-                     std::span<const float> sources, double distance, double moved, std::uint32_t nowhere, std::size_t c, ClusterList& list) {
+void list_neighbours(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets,
+                     const CellList& cells, std::span<const float> sources, double distance, double moved,
+                     std::uint32_t nowhere, std::size_t c, ClusterList& list) {
   HWY_DYNAMIC_DISPATCH(list_chunk)(fixed, first, targets, cells, sources, distance, moved, nowhere, c, list);
 }
 

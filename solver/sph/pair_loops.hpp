@@ -23,7 +23,7 @@ struct PackedFlow {
   PackedSoil soil;
   PackedWalls walls;
   std::vector<std::uint32_t> soil_clusters = {0}, wall_clusters = {0};  ///< first place of each, and one more
-  ClusterList soil_soil, soil_wall, wall_soil;              ///< target_source
+  ClusterList soil_soil, soil_wall, wall_soil;                          ///< target_source
 };
 
 /// Particles in one vector.
@@ -39,14 +39,16 @@ void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double a
 /// Packs place, normal and depth of all walls.
 void pack_walls(PackedFlow& f, const WallParticles& walls);
 
-/// Lists for chunk c of the clusters of `first`, which stand at `targets`: all `sources`, in `cells`, that are nearer than
-/// `distance` [m] to the cluster's bounding box. Both are groups of four that begin with x and y. No source has moved further
-/// than `moved` [m] since the cells were built; `nowhere` is the place that fills the lists up.
-void list_neighbours(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets, const CellList& cells,
-                     std::span<const float> sources, double distance, double moved, std::uint32_t nowhere, std::size_t c, ClusterList& list);
+/// Lists for chunk c of the clusters of `first`, which stand at `targets`: all `sources`, in `cells`, that are nearer
+/// than `distance` [m] to the cluster's bounding box. Both are groups of four that begin with x and y. No source has
+/// moved further than `moved` [m] since the cells were built; `nowhere` is the place that fills the lists up.
+void list_neighbours(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets,
+                     const CellList& cells, std::span<const float> sources, double distance, double moved,
+                     std::uint32_t nowhere, std::size_t c, ClusterList& list);
 
-/// First pass over some of the soil's clusters: velocity gradient, density rate, stress ([Z20] Eqs. 1-10), with the elastic
-/// stress as it will be after `ahead` [s]. `keep`: what returning it to the yield surface takes off is taken off the soil's.
+/// First pass over some of the soil's clusters: velocity gradient, density rate, stress ([Z20] Eqs. 1-10), with the
+/// elastic stress as it will be after `ahead` [s]. `keep`: what returning it to the yield surface takes off is taken
+/// off the soil's.
 void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters);
 /// Stress of chunk c of the walls' clusters, extrapolated from the soil.
 void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t c);
@@ -59,8 +61,9 @@ struct Motion {
   double acceleration = 0.0;  ///< largest, of the last evaluation [m/s2]
   double speed = 0.0;         ///< largest, now [m/s]
   double moved = 0.0;         ///< farthest from where one stood at the last sort [m]
-  double leftmost = std::numeric_limits<double>::infinity(), rightmost = -leftmost;  ///< smallest and largest x, now [m]
-  bool sound = true;          ///< all finite, all densities positive
+  double leftmost = std::numeric_limits<double>::infinity(),
+         rightmost = -leftmost;  ///< smallest and largest x, now [m]
+  bool sound = true;             ///< all finite, all densities positive
 
   /// The extremes of two lots of particles.
   Motion with(const Motion& b) const {
@@ -70,8 +73,8 @@ struct Motion {
   }
 };
 
-/// Moves soil particles on by dt [s] at the present rates, positions with the velocities of the last evaluation (`middle`) or
-/// with the mean of the old and the new ones, and packs the outcome.
+/// Moves soil particles on by dt [s] at the present rates, positions with the velocities of the last evaluation
+/// (`middle`) or with the mean of the old and the new ones, and packs the outcome.
 Motion move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, bool middle, Chunk chunk);
 
 }  // namespace talus

@@ -21,8 +21,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
-/// Neighbours are taken some at a time, step by step together, and the separations of the next ones are worked out before
-/// these are summed: the processor looks ahead too little to see from one pair's square root to the next pair's.
+/// Neighbours are taken some at a time, step by step together, and the separations of the next ones are worked out
+/// before these are summed: the processor looks ahead too little to see from one pair's square root to the next pair's.
 constexpr std::size_t block = ClusterList::block;
 struct Block {
   V v[block];
@@ -46,8 +46,8 @@ HWY_INLINE Separations separations(V X, V Y, const float* HWY_RESTRICT groups, c
   return r;
 }
 
-/// The kernels as functions of the distance in quanta; see sph/kernel.hpp. Both vanish beyond 2h of themselves, so that no
-/// lane needs a mask.
+/// The kernels as functions of the distance in quanta; see sph/kernel.hpp. Both vanish beyond 2h of themselves, so that
+/// no lane needs a mask.
 struct CubicSplineV {
   V per_h, inner_slope, h2, outer_scale, edge, two;
 
@@ -62,7 +62,8 @@ struct CubicSplineV {
   /// -F h^2/sigma: 2 - 3/2 u for u < 1, (2 - u)^2/(2u) beyond. At r = 0 the second is infinite and not chosen.
   HWY_INLINE void minus_F(const Separations& at, Block& F) const {
     Block w;
-    for (std::size_t b = 0; b < block; ++b) w.v[b] = hn::Max(hn::NegMulAdd(outer_scale, at.r.v[b], edge), hn::Zero(D()));
+    for (std::size_t b = 0; b < block; ++b)
+      w.v[b] = hn::Max(hn::NegMulAdd(outer_scale, at.r.v[b], edge), hn::Zero(D()));
     for (std::size_t b = 0; b < block; ++b) {
       const V outer = hn::Div(hn::Mul(w.v[b], w.v[b]), at.r.v[b]);
       F.v[b] = hn::IfThenElse(hn::Lt(at.s.v[b], h2), hn::NegMulAdd(inner_slope, at.r.v[b], two), outer);
@@ -115,8 +116,10 @@ HWY_INLINE Neighbours neighbours(const ClusterList& list, std::size_t c) {
 /// Calls f(kernel) with a null pointer to the kernel's type.
 template <class F>
 void with_kernel(const FlowConstants& k, F&& f) {
-  if (k.numerics.kernel == KernelShape::wendland_c2) f(static_cast<WendlandC2V*>(nullptr));
-  else f(static_cast<CubicSplineV*>(nullptr));
+  if (k.numerics.kernel == KernelShape::wendland_c2)
+    f(static_cast<WendlandC2V*>(nullptr));
+  else
+    f(static_cast<CubicSplineV*>(nullptr));
 }
 
 }  // namespace talus::HWY_NAMESPACE

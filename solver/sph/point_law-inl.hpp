@@ -32,7 +32,8 @@ template <class Get>
 HWY_INLINE V by_material(const FlowConstants& k, const Soil& soil, std::size_t i, std::size_t count, Get&& get) {
   if (k.laws.size() == 1) return set(get(k.laws[0]));
   HWY_ALIGN float value[lanes] = {};
-  for (std::size_t l = 0; l < count; ++l) value[l] = static_cast<float>(get(k.laws[static_cast<std::size_t>(soil.material[i + l])]));
+  for (std::size_t l = 0; l < count; ++l)
+    value[l] = static_cast<float>(get(k.laws[static_cast<std::size_t>(soil.material[i + l])]));
   return hn::Load(D(), value);
 }
 
@@ -44,8 +45,8 @@ struct RatesV {
 };
 
 /// The law of the particles of one cluster, from i; RightHandSide::apply_law is its oracle.
-HWY_INLINE void apply_law(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t i, std::size_t count,
-                          const RatesV& rates) {
+HWY_INLINE void apply_law(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, std::size_t i,
+                          std::size_t count, const RatesV& rates) {
   const D d;
   const auto constant = [&](auto&& get) { return by_material(k, soil, i, count, get); };
   const V zero = hn::Zero(d), one = set(1.0f), third = set(1.0 / 3.0);
@@ -62,7 +63,8 @@ HWY_INLINE void apply_law(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
   if (k.numerics.tension_cutoff) p = hn::Max(p, zero);
   V tan_phi = load_doubles(soil.tan_phi.data() + i, count);
   if (k.walls.slip == WallSlip::friction)
-    tan_phi = hn::IfThenElse(hn::Lt(rates.wall_distance, set(interface_thickness(k.h))), hn::Min(tan_phi, set(std::tan(k.walls.phi))), tan_phi);
+    tan_phi = hn::IfThenElse(hn::Lt(rates.wall_distance, set(interface_thickness(k.h))),
+                             hn::Min(tan_phi, set(std::tan(k.walls.phi))), tan_phi);
   const V tau_y = hn::MulAdd(hn::Max(p, zero), tan_phi, constant([](const PointLaw& law) { return law.c; }));
   const V eta = constant([](const PointLaw& law) { return law.bingham.eta; });
   V txx, tyy, txy, viscosity = eta;
@@ -92,10 +94,12 @@ HWY_INLINE void apply_law(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
     const V turn = hn::Mul(two_spin, txy);
     store(hn::MulAdd(two_G, exx, turn), f.soil.dtxx.data() + i, count);
     store(hn::MulSub(two_G, eyy, turn), f.soil.dtyy.data() + i, count);
-    store(hn::MulAdd(two_G, exy, hn::Mul(hn::Mul(set(0.5f), two_spin), hn::Sub(tyy, txx))), f.soil.dtxy.data() + i, count);
+    store(hn::MulAdd(two_G, exy, hn::Mul(hn::Mul(set(0.5f), two_spin), hn::Sub(tyy, txx))), f.soil.dtxy.data() + i,
+          count);
   }
   const V two_eta = hn::Add(viscosity, viscosity);
-  const V sxx = hn::Sub(hn::MulAdd(two_eta, exx, txx), p), syy = hn::Sub(hn::MulAdd(two_eta, eyy, tyy), p), sxy = hn::MulAdd(two_eta, exy, txy);
+  const V sxx = hn::Sub(hn::MulAdd(two_eta, exx, txx), p), syy = hn::Sub(hn::MulAdd(two_eta, eyy, tyy), p),
+          sxy = hn::MulAdd(two_eta, exy, txy);
   store_groups(sxx, syy, sxy, p, f.soil.stress.data() + 4 * i, count);
   const V rho0 = constant([](const PointLaw& law) { return law.eos.rho0; });
   // drho = -rho tr(L) + rho0 diffusion

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t chunk_size = 128;  ///< particles that a thread takes at a time
 
-/// Calls f(j, r_ij, r2) for every j of `cells` within the kernel's support of x_i, itself included, in the order of the cells.
+/// Calls f(j, r_ij, r2) for every j of `cells` within the kernel's support of x_i, itself included, in the order of the
+/// cells.
 template <class Points, class F>
 inline void for_neighbours(const CellList& cells, const Points& points, Vec2 x_i, double support2, F&& f) {
   cells.for_ranges(x_i, [&](std::size_t begin, std::size_t end) {
@@ -30,11 +31,14 @@ inline void for_neighbours(const CellList& cells, const Points& points, Vec2 x_i
 }
 
 /// Distance of a soil particle to the wall line, by the tangent at the wall particle's foot [m].
-double distance_to_wall(const WallParticles& walls, std::size_t j, Vec2 r_ij) { return dot(r_ij, walls.normal(j)) - walls.depth[j]; }
+double distance_to_wall(const WallParticles& walls, std::size_t j, Vec2 r_ij) {
+  return dot(r_ij, walls.normal(j)) - walls.depth[j];
+}
 
 }  // namespace
 
-RightHandSide::RightHandSide(FlowConstants constants) : k_(std::move(constants)), tan_phi_wall_(std::tan(k_.walls.phi)) {
+RightHandSide::RightHandSide(FlowConstants constants)
+    : k_(std::move(constants)), tan_phi_wall_(std::tan(k_.walls.phi)) {
   for (const PointLaw& law : k_.laws) rho0_.push_back(law.eos.rho0);
 }
 
@@ -42,9 +46,10 @@ RightHandSide::RightHandSide(FlowConstants constants) : k_(std::move(constants))
 void RightHandSide::apply_law(Soil& soil, std::size_t i, const Rates& rates) const {
   const PointLaw& law = k_.laws[static_cast<std::size_t>(soil.material[i])];
   const bool as_printed = k_.rheology.shear_rate == ShearRate::paper;
-  const double tan_phi = k_.walls.slip == WallSlip::friction
-                             ? interface_tan_phi(soil.tan_phi[i], tan_phi_wall_, rates.wall_distance, interface_thickness(k_.h))
-                             : soil.tan_phi[i];
+  const double tan_phi =
+      k_.walls.slip == WallSlip::friction
+          ? interface_tan_phi(soil.tan_phi[i], tan_phi_wall_, rates.wall_distance, interface_thickness(k_.h))
+          : soil.tan_phi[i];
   const Dev e = deviator(strain_rate(rates.L));
   const double p_full = law.eos.pressure(soil.rho[i]);
   const double p = k_.numerics.tension_cutoff ? without_tension(p_full) : p_full;
@@ -67,7 +72,8 @@ void RightHandSide::apply_law(Soil& soil, std::size_t i, const Rates& rates) con
 }
 
 template <class Kernel>
-RightHandSide::Rates RightHandSide::soil_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const CellList& soil_cells) const {
+RightHandSide::Rates RightHandSide::soil_rates(const Kernel& kernel, const Soil& soil, std::size_t i,
+                                               const CellList& soil_cells) const {
   const bool by_mass = k_.numerics.continuity == Continuity::mass;
   const bool diffuse = k_.numerics.density_filter == DensityFilter::delta_sph;
   const Vec2 v_i = soil.velocity(i);
@@ -87,8 +93,8 @@ RightHandSide::Rates RightHandSide::soil_rates(const Kernel& kernel, const Soil&
 }
 
 template <class Kernel>
-void RightHandSide::add_wall_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls, const CellList& wall_cells,
-                                   Rates& rates) const {
+void RightHandSide::add_wall_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls,
+                                   const CellList& wall_cells, Rates& rates) const {
   const bool only_approaching = k_.walls.contact == WallContact::approaching;
   const Vec2 v_i = soil.velocity(i);
   for_neighbours(wall_cells, walls, soil.position(i), kernel.support2(), [&](std::size_t j, Vec2 r, double r2) {
@@ -104,11 +110,13 @@ void RightHandSide::add_wall_rates(const Kernel& kernel, const Soil& soil, std::
 }
 
 template <class Kernel>
-void RightHandSide::wall_stress(const Kernel& kernel, const Soil& soil, WallParticles& walls, std::size_t w, const CellList& soil_cells) const {
+void RightHandSide::wall_stress(const Kernel& kernel, const Soil& soil, WallParticles& walls, std::size_t w,
+                                const CellList& soil_cells) const {
   WallStressSum sum;
   for_neighbours(soil_cells, soil, walls.position(w), kernel.support2(), [&](std::size_t j, Vec2 r, double r2) {
     const Dev t{soil.sxx[j] + soil.p[j], soil.syy[j] + soil.p[j], soil.sxy[j]};
-    sum.add(kernel.W(r2), soil.p[j], t, soil.rho[j], rho0_[static_cast<std::size_t>(soil.material[j])], k_.g, r, k_.c_s);
+    sum.add(kernel.W(r2), soil.p[j], t, soil.rho[j], rho0_[static_cast<std::size_t>(soil.material[j])], k_.g, r,
+            k_.c_s);
   });
   const double inverse = sum.weight > least_weight * kernel.W(0.0) ? 1.0 / sum.weight : 0.0;
   const double p = k_.numerics.tension_cutoff ? without_tension(sum.p * inverse) : sum.p * inverse;
@@ -120,7 +128,8 @@ void RightHandSide::wall_stress(const Kernel& kernel, const Soil& soil, WallPart
 }
 
 template <class Kernel>
-Vec2 RightHandSide::soil_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i, const CellList& soil_cells) const {
+Vec2 RightHandSide::soil_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i,
+                                      const CellList& soil_cells) const {
   const ArtificialViscosity Pi{k_.numerics.alpha, k_.numerics.beta, k_.c_s, k_.h};
   const Vec2 v_i = soil.velocity(i);
   const double rho_i = soil.rho[i];
@@ -135,7 +144,8 @@ Vec2 RightHandSide::soil_acceleration(const Kernel& kernel, const Soil& soil, st
 }
 
 template <class Kernel>
-Vec2 RightHandSide::wall_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls, const CellList& wall_cells) const {
+Vec2 RightHandSide::wall_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls,
+                                      const CellList& wall_cells) const {
   const ArtificialViscosity Pi{k_.numerics.alpha, k_.numerics.beta, k_.c_s, k_.h};
   const bool only_approaching = k_.walls.contact == WallContact::approaching;
   const Vec2 v_i = soil.velocity(i);
@@ -146,7 +156,8 @@ Vec2 RightHandSide::wall_acceleration(const Kernel& kernel, const Soil& soil, st
     const double b = mirror_ratio(distance_to_wall(walls, j, r), walls.depth[j], k_.walls.b_max);
     const double v_dot_r = dot(wall_relative_velocity(v_i, walls.normal(j), b, k_.walls.slip), r);
     if (only_approaching && v_dot_r >= 0.0) return;
-    a += momentum_term(rho_i * walls.volume, s_i, walls.stress(j), rho_i * rho_i, Pi(v_dot_r, r2, rho_i), kernel.F(r2) * r);
+    a += momentum_term(rho_i * walls.volume, s_i, walls.stress(j), rho_i * rho_i, Pi(v_dot_r, r2, rho_i),
+                       kernel.F(r2) * r);
   });
   return a;
 }
@@ -161,8 +172,9 @@ void RightHandSide::shepard(const Kernel& kernel, Soil& soil, const WallParticle
     const Vec2 x_i = soil.position(i);
     const auto rho0 = [&](std::size_t j) { return rho0_[static_cast<std::size_t>(soil.material[j])]; };
     ShepardSum sum;
-    for_neighbours(soil_cells, soil, x_i, support2,
-                   [&](std::size_t j, Vec2, double r2) { sum.add(soil.m[j] / soil.rho[j], soil.rho[j] / rho0(j), kernel.W(r2)); });
+    for_neighbours(soil_cells, soil, x_i, support2, [&](std::size_t j, Vec2, double r2) {
+      sum.add(soil.m[j] / soil.rho[j], soil.rho[j] / rho0(j), kernel.W(r2));
+    });
     for_neighbours(wall_cells, walls, x_i, support2, [&](std::size_t j, Vec2, double r2) {
       if (walls.compression[j] > 0.0) sum.add(walls.volume, walls.compression[j], kernel.W(r2));
     });
@@ -172,7 +184,8 @@ void RightHandSide::shepard(const Kernel& kernel, Soil& soil, const WallParticle
 }
 
 template <class Kernel>
-void RightHandSide::evaluate_plain(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const {
+void RightHandSide::evaluate_plain(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells,
+                                   const CellList& wall_cells) const {
 #pragma omp parallel
   {
 #pragma omp for schedule(static, chunk_size)
@@ -185,18 +198,22 @@ void RightHandSide::evaluate_plain(const Kernel& kernel, Soil& soil, WallParticl
     for (std::size_t w = 0; w < walls.size(); ++w) wall_stress(kernel, soil, walls, w, soil_cells);
 #pragma omp for schedule(static, chunk_size)
     for (std::size_t i = 0; i < soil.n_active; ++i) {
-      const Vec2 a = k_.g + soil_acceleration(kernel, soil, i, soil_cells) + wall_acceleration(kernel, soil, i, walls, wall_cells);
+      const Vec2 a =
+          k_.g + soil_acceleration(kernel, soil, i, soil_cells) + wall_acceleration(kernel, soil, i, walls, wall_cells);
       soil.ax[i] = a.x, soil.ay[i] = a.y;
     }
   }
 }
 
 void RightHandSide::evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) {
-  if (k_.numerics.kernel == KernelShape::cubic_spline) evaluate_plain(CubicSpline{k_.h}, soil, walls, soil_cells, wall_cells);
-  else evaluate_plain(WendlandC2{k_.h}, soil, walls, soil_cells, wall_cells);
+  if (k_.numerics.kernel == KernelShape::cubic_spline)
+    evaluate_plain(CubicSpline{k_.h}, soil, walls, soil_cells, wall_cells);
+  else
+    evaluate_plain(WendlandC2{k_.h}, soil, walls, soil_cells, wall_cells);
 }
 
-void RightHandSide::filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const {
+void RightHandSide::filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells,
+                                   const CellList& wall_cells) const {
   if (k_.numerics.kernel == KernelShape::cubic_spline)
     shepard(CubicSpline{k_.h}, soil, walls, soil_cells, wall_cells);
   else

@@ -10,19 +10,21 @@
 
 namespace talus {
 
-/// Evaluates rates of change in double precision, one pair after the other: the oracle of VectorisedFlow. Gather loops only:
-/// every particle sums its own neighbours in the order of the cells, so the result has the same bits for any number of threads.
+/// Evaluates rates of change in double precision, one pair after the other: the oracle of VectorisedFlow. Gather loops
+/// only: every particle sums its own neighbours in the order of the cells, so the result has the same bits for any
+/// number of threads.
 class RightHandSide {
  public:
   explicit RightHandSide(FlowConstants constants);
 
-  /// Fills ax, ay, drho, dt** and the derived p, s**, gamma_dot of the active soil, and the extrapolated stress of the walls.
-  /// With the elastic law it first returns t** to the yield surface.
-  /// The reach of both cell lists must cover 2h around every particle's present position.
+  /// Fills ax, ay, drho, dt** and the derived p, s**, gamma_dot of the active soil, and the extrapolated stress of the
+  /// walls. With the elastic law it first returns t** to the yield surface. The reach of both cell lists must cover 2h
+  /// around every particle's present position.
   void evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells);
 
   /// One pass of the Shepard filter over the densities of the active soil.
-  void filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  void filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells,
+                      const CellList& wall_cells) const;
 
   const FlowConstants& constants() const { return k_; }
 
@@ -34,19 +36,24 @@ class RightHandSide {
   };
 
   template <class Kernel>
-  void evaluate_plain(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  void evaluate_plain(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells,
+                      const CellList& wall_cells) const;
   template <class Kernel>
   Rates soil_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const CellList& soil_cells) const;
   template <class Kernel>
-  void add_wall_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls, const CellList& wall_cells, Rates& rates) const;
+  void add_wall_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls,
+                      const CellList& wall_cells, Rates& rates) const;
   template <class Kernel>
-  void wall_stress(const Kernel& kernel, const Soil& soil, WallParticles& walls, std::size_t w, const CellList& soil_cells) const;
+  void wall_stress(const Kernel& kernel, const Soil& soil, WallParticles& walls, std::size_t w,
+                   const CellList& soil_cells) const;
   template <class Kernel>
   Vec2 soil_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i, const CellList& soil_cells) const;
   template <class Kernel>
-  Vec2 wall_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls, const CellList& wall_cells) const;
+  Vec2 wall_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls,
+                         const CellList& wall_cells) const;
   template <class Kernel>
-  void shepard(const Kernel& kernel, Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) const;
+  void shepard(const Kernel& kernel, Soil& soil, const WallParticles& walls, const CellList& soil_cells,
+               const CellList& wall_cells) const;
   void apply_law(Soil& soil, std::size_t i, const Rates& rates) const;
 
   FlowConstants k_;

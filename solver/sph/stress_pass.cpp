@@ -23,8 +23,10 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
   const Kernel kernel(f.fixed.quantum / k.h);
   const V quantum = set(f.fixed.quantum), b_max = set(k.walls.b_max), zero = hn::Zero(d);
   const V volume_w = set(k.dx * k.dx), support2 = set(4.0 * k.h * k.h / (f.fixed.quantum * f.fixed.quantum));
-  const V to_L = set(-sigma_h2(k) * f.fixed.quantum), to_diffusion = set(2.0 * k.numerics.delta * k.h * k.c_s * sigma_h2(k));
-  const bool only_approaching = k.walls.contact == WallContact::approaching, smooth = k.walls.slip == WallSlip::free_slip;
+  const V to_L = set(-sigma_h2(k) * f.fixed.quantum),
+          to_diffusion = set(2.0 * k.numerics.delta * k.h * k.c_s * sigma_h2(k));
+  const bool only_approaching = k.walls.contact == WallContact::approaching,
+             smooth = k.walls.slip == WallSlip::free_slip;
   for (std::size_t c = clusters.begin; c < clusters.end; ++c) {
     const std::size_t i = f.soil_clusters[c], count = f.soil_clusters[c + 1] - i;
     V X, Y, vx, vy, volume, q, rho, material;
@@ -62,7 +64,8 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
       for (std::size_t b = 0; b < block; ++b) {
         const std::size_t group = 4 * std::size_t{j[b]};
         const V x = r.x.v[b], y = r.y.v[b];
-        const WallPair w = wall_pair(x, y, vx, vy, f.walls.place.data() + group, f.walls.stress[group + 3], quantum, b_max, smooth);
+        const WallPair w =
+            wall_pair(x, y, vx, vy, f.walls.place.data() + group, f.walls.stress[group + 3], quantum, b_max, smooth);
         M acts = hn::Lt(r.s.v[b], support2);
         if (only_approaching) acts = hn::And(acts, hn::Lt(w.v_dot_r, zero));
         const V VF = hn::IfThenElseZero(acts, hn::Mul(volume_w, F.v[b]));
@@ -73,15 +76,19 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
       }
     }
     apply_law(f, k, soil, ahead, keep, i, count,
-              {hn::Mul(to_L, Lxx), hn::Mul(to_L, Lxy), hn::Mul(to_L, Lyx), hn::Mul(to_L, Lyy), hn::Mul(to_diffusion, diffusion), distance});
+              {hn::Mul(to_L, Lxx), hn::Mul(to_L, Lxy), hn::Mul(to_L, Lyx), hn::Mul(to_L, Lyy),
+               hn::Mul(to_diffusion, diffusion), distance});
   }
 }
 
 void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
   with_kernel(k, [&]<class Kernel>(Kernel*) {
-    if (k.numerics.density_filter != DensityFilter::delta_sph) stress_loop<Kernel, false, true>(f, k, soil, ahead, keep, clusters);
-    else if (k.laws.size() == 1) stress_loop<Kernel, true, true>(f, k, soil, ahead, keep, clusters);
-    else stress_loop<Kernel, true, false>(f, k, soil, ahead, keep, clusters);
+    if (k.numerics.density_filter != DensityFilter::delta_sph)
+      stress_loop<Kernel, false, true>(f, k, soil, ahead, keep, clusters);
+    else if (k.laws.size() == 1)
+      stress_loop<Kernel, true, true>(f, k, soil, ahead, keep, clusters);
+    else
+      stress_loop<Kernel, true, false>(f, k, soil, ahead, keep, clusters);
   });
 }
 

@@ -19,7 +19,8 @@ void for_each_pair(S& soil, P& packed, F&& f) {
   f(soil.ax, packed.ax, 1, 0), f(soil.ay, packed.ay, 1, 0), f(soil.drho, packed.drho, 1, 0);
   f(soil.dtxx, packed.dtxx, 1, 0), f(soil.dtyy, packed.dtyy, 1, 0), f(soil.dtxy, packed.dtxy, 1, 0);
   f(soil.gamma_dot, packed.gamma_dot, 1, 0);
-  f(soil.sxx, packed.stress, 4, 0), f(soil.syy, packed.stress, 4, 1), f(soil.sxy, packed.stress, 4, 2), f(soil.p, packed.stress, 4, 3);
+  f(soil.sxx, packed.stress, 4, 0), f(soil.syy, packed.stress, 4, 1), f(soil.sxy, packed.stress, 4, 2),
+      f(soil.p, packed.stress, 4, 3);
 }
 
 /// The one value of all, if they have one: reading it from memory once is faster.
@@ -65,8 +66,8 @@ void VectorisedFlow::permute(std::span<const std::uint32_t> order, std::vector<d
   for_each_packed_rate(flow_.soil, [&](const char*, auto& array) { talus::permute(array, order, scratch); });
 }
 
-void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells, double moved,
-                           double way) {
+void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const CellList& soil_cells,
+                           const CellList& wall_cells, double moved, double way) {
   const std::size_t lanes = cluster_size();
   const double reach = 2.0 * k_.h + way;
   const auto lists = [](const std::vector<std::uint32_t>& first) {
@@ -92,18 +93,22 @@ void VectorisedFlow::renew(const Soil& soil, const WallParticles& walls, const C
     // Sources may have moved since the cells were built; from now on targets and sources both may move by `way`.
 #pragma omp for schedule(static) nowait
     for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) {
-      list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, soil_cells, s.motion, reach + way, moved, n_soil, c, flow_.soil_soil);
-      list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, wall_cells, w.place, reach, 0.0, n_wall, c, flow_.soil_wall);
+      list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, soil_cells, s.motion, reach + way, moved, n_soil, c,
+                      flow_.soil_soil);
+      list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, wall_cells, w.place, reach, 0.0, n_wall, c,
+                      flow_.soil_wall);
     }
 #pragma omp for schedule(dynamic)
     for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c)
-      list_neighbours(flow_.fixed, flow_.wall_clusters, w.place, soil_cells, s.motion, reach, moved, n_soil, c, flow_.wall_soil);
+      list_neighbours(flow_.fixed, flow_.wall_clusters, w.place, soil_cells, s.motion, reach, moved, n_soil, c,
+                      flow_.wall_soil);
   }
   work_.assign(1, 0);
   for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) {
     constexpr std::size_t law = 10;  // what a cluster costs besides, in neighbours
     const auto length = [&](const ClusterList& list) { return std::size_t{list.chunks[c].at.back()}; };
-    work_.push_back(work_.back() + length(flow_.soil_soil) + 2 * length(flow_.soil_wall) + law * ClusterList::chunk_size);
+    work_.push_back(work_.back() + length(flow_.soil_soil) + 2 * length(flow_.soil_wall) +
+                    law * ClusterList::chunk_size);
   }
 }
 
@@ -119,15 +124,18 @@ void VectorisedFlow::share_out() {
     return std::min(ClusterList::chunk_size * chunk + within, clusters);
   };
   shares_.resize(threads);
-  for (std::size_t t = 0; t < threads; ++t) shares_[t] = {.begin = border(t), .end = border(t + 1), .stress = border(t), .momentum = border(t)};
+  for (std::size_t t = 0; t < threads; ++t)
+    shares_[t] = {.begin = border(t), .end = border(t + 1), .stress = border(t), .momentum = border(t)};
 }
 
-/// Calls f(clusters) for those of the calling thread's share, then for what the others have left of theirs: a thread that the
-/// machine holds up does not hold up the rest. Many clusters at a time, few towards the end, so that all end together.
-/// Makes the share of the other pass whole again, which a barrier must part from this one. Inside a parallel region.
+/// Calls f(clusters) for those of the calling thread's share, then for what the others have left of theirs: a thread
+/// that the machine holds up does not hold up the rest. Many clusters at a time, few towards the end, so that all end
+/// together. Makes the share of the other pass whole again, which a barrier must part from this one. Inside a parallel
+/// region.
 template <class F>
-void VectorisedFlow::for_clusters(std::size_t Share::* next, std::size_t Share::* other, F&& f) {
-  const auto thread = static_cast<std::size_t>(omp_get_thread_num()), threads = static_cast<std::size_t>(omp_get_num_threads());
+void VectorisedFlow::for_clusters(std::size_t Share::*next, std::size_t Share::*other, F&& f) {
+  const auto thread = static_cast<std::size_t>(omp_get_thread_num()),
+             threads = static_cast<std::size_t>(omp_get_num_threads());
   // There may be fewer threads than shares: OpenMP gives as many as it can.
   for (std::size_t t = thread; t < shares_.size(); t += threads) shares_[t].*other = shares_[t].begin;
   constexpr std::size_t many = 32, few = 8;
@@ -142,13 +150,16 @@ void VectorisedFlow::for_clusters(std::size_t Share::* next, std::size_t Share::
   }
 }
 
-/// Calls f(particles) for those of the calling thread's share, which are in its caches: loops that move memory rather than
-/// compute would lose by taking what others have left. Inside a parallel region, which must wait for the other threads afterwards.
+/// Calls f(particles) for those of the calling thread's share, which are in its caches: loops that move memory rather
+/// than compute would lose by taking what others have left. Inside a parallel region, which must wait for the other
+/// threads afterwards.
 template <class F>
 void VectorisedFlow::for_own(std::size_t active, F&& f) {
-  const auto thread = static_cast<std::size_t>(omp_get_thread_num()), threads = static_cast<std::size_t>(omp_get_num_threads());
+  const auto thread = static_cast<std::size_t>(omp_get_thread_num()),
+             threads = static_cast<std::size_t>(omp_get_num_threads());
   const auto place = [&](std::size_t cluster) { return std::min<std::size_t>(flow_.soil_clusters[cluster], active); };
-  for (std::size_t t = thread; t < shares_.size(); t += threads) f(Chunk{place(shares_[t].begin), place(shares_[t].end)});
+  for (std::size_t t = thread; t < shares_.size(); t += threads)
+    f(Chunk{place(shares_[t].begin), place(shares_[t].end)});
 }
 
 /// Inside a parallel region.
@@ -158,7 +169,8 @@ void VectorisedFlow::pack_active(const Soil& soil, double ahead) {
 }
 
 /// Inside a parallel region.
-void VectorisedFlow::evaluate_here(Soil& soil, WallParticles& walls, double ahead, bool keep, bool pack, Stopwatch& watch) {
+void VectorisedFlow::evaluate_here(Soil& soil, WallParticles& walls, double ahead, bool keep, bool pack,
+                                   Stopwatch& watch) {
   if (pack) pack_active(soil, ahead);
 #pragma omp master
   watch.lap(times_.update);
@@ -189,7 +201,7 @@ Motion VectorisedFlow::step(Soil& soil, WallParticles& walls, double dt, bool rk
   Stopwatch watch;
   share_out();
   Motion motion;
-#pragma omp declare reduction(extremes : Motion : omp_out = omp_out.with(omp_in))
+#pragma omp declare reduction(extremes:Motion : omp_out = omp_out.with(omp_in))
 #pragma omp parallel reduction(extremes : motion)
   {
     if (rk2) evaluate_here(soil, walls, 0.0, true, !packed_now_, watch);

@@ -20,26 +20,27 @@ inline Vec2 wall_relative_velocity(Vec2 v_i, Vec2 n, double b, WallSlip slip) {
   return slip == WallSlip::free_slip ? b * dot(v_i, n) * n : b * v_i;
 }
 
-/// A wall that is smoother than the soil is a thin interface layer with the wall's friction angle (after Desai 1984): soil
-/// nearer than `thickness` to the wall line yields at the smaller of both.
+/// A wall that is smoother than the soil is a thin interface layer with the wall's friction angle (after Desai 1984):
+/// soil nearer than `thickness` to the wall line yields at the smaller of both.
 inline double interface_tan_phi(double tan_phi, double tan_phi_wall, double d_i, double thickness) {
   return d_i < thickness ? std::min(tan_phi, tan_phi_wall) : tan_phi;
 }
 /// Wide enough to hold most of what the kernel sees from the wall: one row of particles at h = 1.2 dx, two at 1.5 dx.
 inline double interface_thickness(double h) { return 1.1 * h; }
 
-/// By how much the soil's deviatoric stress grows on its way to a wall particle: as the pressure does there, at most threefold.
-/// Under its own weight a layer carries shear in proportion to its depth, as it carries pressure; extrapolated as a constant the shear
-/// would lack that of half a support, and a layer of cohesionless soil would slide at 23 instead of 25 degrees.
-/// For rough walls only: along a wall that is smoother than the soil, the wall's friction bounds the shear.
+/// By how much the soil's deviatoric stress grows on its way to a wall particle: as the pressure does there, at most
+/// threefold. Under its own weight a layer carries shear in proportion to its depth, as it carries pressure;
+/// extrapolated as a constant the shear would lack that of half a support, and a layer of cohesionless soil would slide
+/// at 23 instead of 25 degrees. For rough walls only: along a wall that is smoother than the soil, the wall's friction
+/// bounds the shear.
 /// @param p_wall  extrapolated pressure [Pa]
 /// @param p_soil  the soil's, interpolated without its hydrostatic part [Pa]
 inline double deviator_growth(double p_wall, double p_soil) {
   return p_soil > 0.0 ? std::clamp(p_wall / p_soil, 0.0, 3.0) : 1.0;
 }
 
-/// A wall particle that sees less of the soil than this share of W(0) sees nothing: in single precision the inverse of a weight that
-/// is almost zero would be infinite.
+/// A wall particle that sees less of the soil than this share of W(0) sees nothing: in single precision the inverse of
+/// a weight that is almost zero would be infinite.
 inline constexpr double least_weight = 1e-24;
 
 /// Shepard interpolation of the soil's stress to a wall particle, pressure with the hydrostatic term of Adami 2012:

@@ -16,11 +16,12 @@ namespace talus::HWY_NAMESPACE {
 
 /// A soil-wall pair: see sph/wall.hpp.
 struct WallPair {
-  V distance;   ///< of the soil particle to the wall line [m]
-  V vx, vy;     ///< v_ij [m/s]
-  V v_dot_r;    ///< [quantum m/s]
+  V distance;  ///< of the soil particle to the wall line [m]
+  V vx, vy;    ///< v_ij [m/s]
+  V v_dot_r;   ///< [quantum m/s]
 };
-HWY_INLINE WallPair wall_pair(V x, V y, V vx, V vy, const float* HWY_RESTRICT place, float depth, V quantum, V b_max, bool smooth) {
+HWY_INLINE WallPair wall_pair(V x, V y, V vx, V vy, const float* HWY_RESTRICT place, float depth, V quantum, V b_max,
+                              bool smooth) {
   WallPair w;
   const V nx = set(place[2]), ny = set(place[3]), depth_j = set(depth);
   w.distance = hn::MulSub(quantum, hn::MulAdd(x, nx, hn::Mul(y, ny)), depth_j);

@@ -22,7 +22,8 @@ HWY_ATTR void wall_stress_loop(PackedFlow& f, const FlowConstants& k, WallPartic
   const V zero = hn::Zero(d), per_c2 = set(1.0 / (k.c_s * k.c_s));
   const bool rough = k.walls.slip == WallSlip::no_slip;
   const V gx = set(k.g.x * f.fixed.quantum), gy = set(k.g.y * f.fixed.quantum);  // of separations in quanta
-  const std::size_t begin = chunk * ClusterList::chunk_size, end = std::min(begin + ClusterList::chunk_size, f.wall_clusters.size() - 1);
+  const std::size_t begin = chunk * ClusterList::chunk_size,
+                    end = std::min(begin + ClusterList::chunk_size, f.wall_clusters.size() - 1);
   for (std::size_t c = begin; c < end; ++c) {
     const std::size_t i = f.wall_clusters[c], count = f.wall_clusters[c + 1] - i;
     V X, Y, nx, ny, unused, depth;
@@ -61,7 +62,8 @@ HWY_ATTR void wall_stress_loop(PackedFlow& f, const FlowConstants& k, WallPartic
     hn::LoadInterleaved4(d, f.walls.stress.data() + 4 * i, unused, unused_2, unused_3, depth);
     store_groups(sxx, syy, sxy, depth, f.walls.stress.data() + 4 * i, count);
     store_doubles(p, walls.p.data() + i, count);
-    store_doubles(sxx, walls.sxx.data() + i, count), store_doubles(syy, walls.syy.data() + i, count), store_doubles(sxy, walls.sxy.data() + i, count);
+    store_doubles(sxx, walls.sxx.data() + i, count), store_doubles(syy, walls.syy.data() + i, count),
+        store_doubles(sxy, walls.sxy.data() + i, count);
     compression = hn::IfThenElseZero(covered, hn::MulAdd(compression, inverse, set(1.0f)));
     store_doubles(compression, walls.compression.data() + i, count);
   }

@@ -23,7 +23,7 @@ struct DriverOptions {
   std::vector<std::string> program;  ///< called as `program... CASE --realization I ...`: the arguments of `talus run`
   int workers = 1;                   ///< processes at a time, >= 1; without `make_executor`
   std::function<std::unique_ptr<executor::Executor>(const StudyPaths&)> make_executor;  ///< unset: processes here
-  int threads = 1;                   ///< of each, >= 1
+  int threads = 1;                                                                      ///< of each, >= 1
   std::int64_t first = 0;            ///< realizations first <= i < last are run here, the others elsewhere
   std::optional<std::int64_t> last;  ///< unset: the planned number
   int attempts = 2;                  ///< of a run that breaks off, before it has failed; >= 1
@@ -46,9 +46,9 @@ enum class Outcome { finished, stopped_early, interrupted, too_many_failed };
 
 /// Runs what `plan` asks for and `directory` does not hold yet.
 ///
-/// A worker that reports a divergence or an internal error, or that is killed `attempts` times, is a failed realization: recorded,
-/// kept in the denominator, not drawn again. A worker that finds the case bad or the disk full ends the study instead:
-/// nothing is recorded, and the same command goes on.
+/// A worker that reports a divergence or an internal error, or that is killed `attempts` times, is a failed
+/// realization: recorded, kept in the denominator, not drawn again. A worker that finds the case bad or the disk full
+/// ends the study instead: nothing is recorded, and the same command goes on.
 /// @param resolved  LoadedCase::resolved of `plan`; what the workers read
 /// @throws ConfigError when the directory holds another study, or a worker refuses the case
 /// @throws IoError when the directory cannot be claimed or written, or a worker cannot write

@@ -96,7 +96,8 @@ void write_merged(const fs::path& out, const Tables& tables, const fs::path& ori
   if (fs::exists(StudyPaths{out}.runs()))
     throw IoError("cannot write into " + out.string() +
                   ": it holds a study with runs of its own; choose another directory");
-  const std::string resolved_case = read_file(StudyPaths{origin}.resolved_case(), max_case_bytes);  // before anything is written
+  const std::string resolved_case =
+      read_file(StudyPaths{origin}.resolved_case(), max_case_bytes);  // before anything is written
   OutputDirectory claimed(out, OutputKind::study, tables.plan.case_hash, true);
   write_file_atomically(StudyPaths{out}.resolved_case(), resolved_case);
   write_plan(out, tables.plan);

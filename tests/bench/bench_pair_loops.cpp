@@ -1,8 +1,9 @@
-// The loops of one evaluation, each by itself, over 12,800 and a million particles of disordered soil. Items are soil particles.
-
-#include <cstdint>
+// The loops of one evaluation, each by itself, over 12,800 and a million particles of disordered soil. Items are soil
+// particles.
 
 #include <benchmark/benchmark.h>
+
+#include <cstdint>
 
 #include "integrate/integrator.hpp"
 #include "random_soil.hpp"
@@ -24,7 +25,9 @@ struct Bed {
       for (double& value : *t) value *= 0.1;  // some yield, some do not
     walls = flat_walls(static_cast<int>(width), k.dx);
     soil_cells = sorted(soil, 2.3 * k.h), wall_cells = sorted(walls, 2.0 * k.h);
-    const auto chunks = [](const auto& first) { return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size; };
+    const auto chunks = [](const auto& first) {
+      return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size;
+    };
     f.fixed = FixedPoint::covering(soil_cells.box(), k.h);
     f.soil.resize(soil.size()), f.walls.resize(walls.size());
     f.soil_clusters = clusters(soil_cells, cluster_size()), f.wall_clusters = clusters(wall_cells, cluster_size());
@@ -38,15 +41,16 @@ struct Bed {
     const double reach = 2.0 * k.h + way_h * k.h;
     const auto n_soil = static_cast<std::uint32_t>(soil.size()), n_wall = static_cast<std::uint32_t>(walls.size());
     for (std::size_t c = 0; c < f.soil_soil.chunks.size(); ++c) {
-      list_neighbours(f.fixed, f.soil_clusters, f.soil.motion, soil_cells, f.soil.motion, reach + way_h * k.h, 0.3 * k.h, n_soil, c, f.soil_soil);
-      list_neighbours(f.fixed, f.soil_clusters, f.soil.motion, wall_cells, f.walls.place, reach, 0.0, n_wall, c, f.soil_wall);
+      list_neighbours(f.fixed, f.soil_clusters, f.soil.motion, soil_cells, f.soil.motion, reach + way_h * k.h,
+                      0.3 * k.h, n_soil, c, f.soil_soil);
+      list_neighbours(f.fixed, f.soil_clusters, f.soil.motion, wall_cells, f.walls.place, reach, 0.0, n_wall, c,
+                      f.soil_wall);
     }
     for (std::size_t c = 0; c < f.wall_soil.chunks.size(); ++c)
-      list_neighbours(f.fixed, f.wall_clusters, f.walls.place, soil_cells, f.soil.motion, reach, 0.3 * k.h, n_soil, c, f.wall_soil);
+      list_neighbours(f.fixed, f.wall_clusters, f.walls.place, soil_cells, f.soil.motion, reach, 0.3 * k.h, n_soil, c,
+                      f.wall_soil);
   }
-  void stress() {
-    stress_pass(f, k, soil, 0.0, false, {0, f.soil_clusters.size() - 1});
-  }
+  void stress() { stress_pass(f, k, soil, 0.0, false, {0, f.soil_clusters.size() - 1}); }
   void report(benchmark::State& state) const {
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * soil.size()));
     state.SetLabel(pair_loops_target());
@@ -93,8 +97,7 @@ void WallStressPass(benchmark::State& state) {
 void MomentumPass(benchmark::State& state) {
   Bed bed(state.range(0), static_cast<KernelShape>(state.range(1)));
   bed.stress();
-  for (auto _ : state)
-    momentum_pass(bed.f, bed.k, {0, bed.f.soil_clusters.size() - 1});
+  for (auto _ : state) momentum_pass(bed.f, bed.k, {0, bed.f.soil_clusters.size() - 1});
   bed.report(state);
 }
 void Move(benchmark::State& state) {

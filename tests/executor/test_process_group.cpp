@@ -54,7 +54,8 @@ rlim_t limit_of(const Process& child, __rlimit_resource what) {
 }
 
 TEST_F(ProcessGroup, HasTheLimitsThatItWasGiven) {
-  const Process child = shell("sleep 100", {.memory_bytes = 1 << 30, .cpu_seconds = 77, .file_bytes = 1 << 20, .core_dumps = false});
+  const Process child =
+      shell("sleep 100", {.memory_bytes = 1 << 30, .cpu_seconds = 77, .file_bytes = 1 << 20, .core_dumps = false});
   EXPECT_EQ(limit_of(child, RLIMIT_AS), rlim_t{1} << 30);
   EXPECT_EQ(limit_of(child, RLIMIT_CPU), rlim_t{77});
   EXPECT_EQ(limit_of(child, RLIMIT_FSIZE), rlim_t{1} << 20);

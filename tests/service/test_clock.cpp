@@ -1,8 +1,8 @@
 // Times as text and back.
 
-#include "support/clock.hpp"
-
 #include <gtest/gtest.h>
+
+#include "support/clock.hpp"
 
 namespace talus::service {
 namespace {

@@ -1,8 +1,8 @@
 // What the guard lets through to the HTTP library.
 
-#include "http/guard.hpp"
-
 #include <gtest/gtest.h>
+
+#include "http/guard.hpp"
 
 namespace talus::service {
 namespace {

@@ -1,8 +1,7 @@
-#include "jobs/inputs.hpp"
-
 #include <gtest/gtest.h>
 
 #include "http/echo.hpp"
+#include "jobs/inputs.hpp"
 
 namespace talus::service {
 namespace {
@@ -17,8 +16,12 @@ std::string pointers(Read read) {
   }
   return all;
 }
-std::string study_faults(const char* text) { return pointers([&] { read_study_inputs(Json::parse(text)); }); }
-std::string echo_faults(const char* text) { return pointers([&] { read_echo_inputs(Json::parse(text)); }); }
+std::string study_faults(const char* text) {
+  return pointers([&] { read_study_inputs(Json::parse(text)); });
+}
+std::string echo_faults(const char* text) {
+  return pointers([&] { read_echo_inputs(Json::parse(text)); });
+}
 
 TEST(StudyInputs, OptionsGoIntoTheStudy) {
   const StudyInputs in = read_study_inputs(Json::parse(

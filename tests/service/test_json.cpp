@@ -1,6 +1,6 @@
-#include "support/json.hpp"
-
 #include <gtest/gtest.h>
+
+#include "support/json.hpp"
 
 namespace talus::service {
 namespace {

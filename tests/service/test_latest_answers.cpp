@@ -1,10 +1,10 @@
-#include "jobs/latest_answers.hpp"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <thread>
 #include <vector>
+
+#include "jobs/latest_answers.hpp"
 
 namespace talus::service {
 namespace {

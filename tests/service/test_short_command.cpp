@@ -1,8 +1,7 @@
-#include "process/short_command.hpp"
-
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include "process/short_command.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus::service {

@@ -1,7 +1,5 @@
 // The queue: leases, attempts, fairness, and what is left of them after a crash.
 
-#include "queue/store.hpp"
-
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 #include <sys/stat.h>
@@ -9,6 +7,7 @@
 #include <set>
 #include <thread>
 
+#include "queue/store.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus::service {

@@ -1,6 +1,6 @@
 #pragma once
-// Random soil for tests: a jittered lattice with non-uniform masses, densities, velocities and strengths, so that a swapped
-// index shows.
+// Random soil for tests: a jittered lattice with non-uniform masses, densities, velocities and strengths, so that a
+// swapped index shows.
 
 #include <cstdint>
 #include <random>
@@ -20,7 +20,8 @@ inline Soil random_soil(int nx, int ny, double dx, unsigned seed, int materials 
   s.material.assign(n, 0), s.id.resize(n), s.n_active = n;
   s.x_sorted.assign(n, 0.0f), s.y_sorted.assign(n, 0.0f);
   for (std::size_t i = 0; i < n; ++i) {
-    const auto col = static_cast<double>(i % static_cast<std::size_t>(nx)), row = static_cast<double>(i / static_cast<std::size_t>(nx));
+    const auto col = static_cast<double>(i % static_cast<std::size_t>(nx)),
+               row = static_cast<double>(i / static_cast<std::size_t>(nx));
     s.x[i] = (col + 0.25 * u(engine)) * dx, s.y[i] = (row + 0.25 * u(engine)) * dx;
     s.vx[i] = 2.0 * u(engine), s.vy[i] = 2.0 * u(engine);
     s.rho[i] = 2000 * (1 + 0.02 * u(engine));
@@ -44,7 +45,8 @@ inline CellList sorted(Soil& soil, double reach) {
 }
 
 /// Evaluates once, by the loops that the constants ask for.
-inline void evaluate(const FlowConstants& k, Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) {
+inline void evaluate(const FlowConstants& k, Soil& soil, WallParticles& walls, const CellList& soil_cells,
+                     const CellList& wall_cells) {
   if (!VectorisedFlow::serves(k.numerics)) return RightHandSide(k).evaluate(soil, walls, soil_cells, wall_cells);
   VectorisedFlow flow(k, soil);
   flow.renew(soil, walls, soil_cells, wall_cells, 0.0, 0.0);
@@ -52,10 +54,12 @@ inline void evaluate(const FlowConstants& k, Soil& soil, WallParticles& walls, c
   flow.unpack(soil);
 }
 
-inline FlowConstants constants(double dx, Vec2 g = {0.0, -9.81}, std::vector<Material> materials = {{"a", 2000, 0.5, 700, 30}}) {
+inline FlowConstants constants(double dx, Vec2 g = {0.0, -9.81},
+                               std::vector<Material> materials = {{"a", 2000, 0.5, 700, 30}}) {
   FlowConstants k;
   k.h = 1.2 * dx, k.dx = dx, k.c_s = 50, k.g = g;
-  k.numerics.precision = Precision::full;  // formulas are tested to the last digits; the vectorised loops have tests of their own
+  k.numerics.precision =
+      Precision::full;  // formulas are tested to the last digits; the vectorised loops have tests of their own
   k.laws = point_laws(materials, {}, k.c_s);
   return k;
 }

@@ -1,11 +1,10 @@
-#include "integrate/integrator.hpp"
-
 #include <gtest/gtest.h>
 #include <omp.h>
 
 #include <cmath>
 #include <string>
 
+#include "integrate/integrator.hpp"
 #include "random_soil.hpp"
 #include "sph/vectorised_flow.hpp"
 
@@ -37,8 +36,8 @@ Errors errors_after_one_second(Step step, int n) {
   rates(s);  // the leapfrog predicts with the rates of the step before
   for (int k = 0; k < n; ++k) step(s, start, 1.0 / n, rates);
   const double txx = 0.5 * (std::cos(1.0) + std::sin(1.0));  // particular solution of t' = -t + cos, homogeneous part 0
-  return {std::abs(s.x[0] - std::cos(1.0)), std::abs(s.y[0] - 0.5 * (1 - std::exp(-2.0))), std::abs(s.rho[0] - std::exp(-std::sin(1.0))),
-          std::abs(s.txx[0] - txx)};
+  return {std::abs(s.x[0] - std::cos(1.0)), std::abs(s.y[0] - 0.5 * (1 - std::exp(-2.0))),
+          std::abs(s.rho[0] - std::exp(-std::sin(1.0))), std::abs(s.txx[0] - txx)};
 }
 
 void expect_second_order(Step step) {
@@ -130,8 +129,8 @@ TEST(Integrator, VectorisedStepsDoNotDependOnTheThreadsThatThereAre) {
   EXPECT_EQ(within.rho, alone.rho);
 }
 
-/// What a step says of its particles is theirs alone, wherever the threads' shares end: here every particle is brought to rest by
-/// an acceleration, which those beyond a share's end must not lend to it.
+/// What a step says of its particles is theirs alone, wherever the threads' shares end: here every particle is brought
+/// to rest by an acceleration, which those beyond a share's end must not lend to it.
 TEST(Integrator, ExtremesOfAStepAreThoseOfItsParticles) {
   using namespace testing_support;
   const int before = omp_get_max_threads();
@@ -175,7 +174,8 @@ TEST(Integrator, VectorisedStepsEqualThePlainOnes) {
       for (const double value : expected) size = std::max(size, std::abs(value));
       for_each_state(b, [&](const std::string& other, const auto& actual) {
         if (name != other) return;
-        for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(actual[i], expected[i], 3e-6 * size) << name << " of " << i;
+        for (std::size_t i = 0; i < a.size(); ++i)
+          ASSERT_NEAR(actual[i], expected[i], 3e-6 * size) << name << " of " << i;
       });
     });
   }

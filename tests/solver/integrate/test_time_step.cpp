@@ -1,6 +1,6 @@
-#include "integrate/time_step.hpp"
-
 #include <gtest/gtest.h>
+
+#include "integrate/time_step.hpp"
 
 namespace talus {
 namespace {

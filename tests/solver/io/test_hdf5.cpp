@@ -1,6 +1,6 @@
-#include "faults.hpp"
-
 #include <cstdint>
+
+#include "faults.hpp"
 #include "io/files.hpp"
 #include "io/hdf5.hpp"
 #include "temporary_directory.hpp"

@@ -1,6 +1,6 @@
-#include "material/bingham.hpp"
-
 #include <gtest/gtest.h>
+
+#include "material/bingham.hpp"
 
 namespace talus {
 namespace {
@@ -24,7 +24,8 @@ TEST(Bingham, TheNormAsPrintedMultipliesTheYieldStressBySqrt3) {
   const Dev t = Bingham{eta, 1e-3}.stress(yield_stress(c, tan_phi, p), e, shear_rate_paper(e));
   EXPECT_NEAR(t.xy, eta * rate + std::numbers::sqrt3 * (c + p * tan_phi), 1e-9);
   // A friction angle of 25 degrees acts like 38.9.
-  EXPECT_NEAR(std::atan(std::numbers::sqrt3 * std::tan(25 * std::numbers::pi / 180)) * 180 / std::numbers::pi, 38.9, 0.05);
+  EXPECT_NEAR(std::atan(std::numbers::sqrt3 * std::tan(25 * std::numbers::pi / 180)) * 180 / std::numbers::pi, 38.9,
+              0.05);
 }
 
 TEST(Bingham, ViscosityIsBoundedAtRest) {

@@ -1,8 +1,8 @@
-#include "material/elastoviscoplastic.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "material/elastoviscoplastic.hpp"
 
 namespace talus {
 namespace {

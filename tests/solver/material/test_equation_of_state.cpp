@@ -1,6 +1,6 @@
-#include "material/equation_of_state.hpp"
-
 #include <gtest/gtest.h>
+
+#include "material/equation_of_state.hpp"
 
 namespace talus {
 namespace {

@@ -1,10 +1,10 @@
-#include "neighbours/cell_list.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <random>
 #include <set>
+
+#include "neighbours/cell_list.hpp"
 
 namespace talus {
 namespace {
@@ -54,7 +54,8 @@ TEST(CellList, OrderIsAPermutationAndStable) {
   const Cloud c{{0.1, 0.11, 5.0, 0.12, 5.01}, {0.1, 0.1, 0.1, 0.1, 0.1}};
   CellList cells;
   cells.build(c.x, c.y, 1.0);
-  EXPECT_EQ(std::vector<std::uint32_t>(cells.order().begin(), cells.order().end()), (std::vector<std::uint32_t>{0, 1, 3, 2, 4}));
+  EXPECT_EQ(std::vector<std::uint32_t>(cells.order().begin(), cells.order().end()),
+            (std::vector<std::uint32_t>{0, 1, 3, 2, 4}));
 }
 
 TEST(CellList, SearchesFromOutsideTheGrid) {

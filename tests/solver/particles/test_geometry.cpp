@@ -1,9 +1,9 @@
-#include "particles/geometry.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "particles/geometry.hpp"
 
 namespace talus {
 namespace {
@@ -23,7 +23,8 @@ TEST(Geometry, CoverIsTheSoilAboveAPoint) {
 }
 
 TEST(Geometry, CoverOfAnOutlineCrossedFourTimes) {
-  const std::vector<Vec2> fork{{0, 0}, {3, 0}, {3, 5}, {0, 5}, {0, 4}, {2, 4}, {2, 1}, {0, 1}};  // a C: two prongs at x = 1
+  const std::vector<Vec2> fork{{0, 0}, {3, 0}, {3, 5}, {0, 5},
+                               {0, 4}, {2, 4}, {2, 1}, {0, 1}};  // a C: two prongs at x = 1
   EXPECT_DOUBLE_EQ(cover(fork, {1, 0}), 1.0 + 1.0);
   EXPECT_DOUBLE_EQ(cover(fork, {1, 0.25}), 0.75 + 1.0);
   EXPECT_DOUBLE_EQ(cover(fork, {1, 2}), 1.0);
@@ -61,7 +62,8 @@ TEST(Geometry, OffsetOfARightAngleKeepsBothDistances) {
 
 TEST(Geometry, FillTilesARectangleWithCellCentres) {
   const Terrain ground{{{-1, 0}, {5, 0}}, false, false, false, 0, 0};
-  const auto points = fill_slide(std::vector<SlidePart>{{{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, 0}}, ground, 0.1, Placement::cells);
+  const auto points =
+      fill_slide(std::vector<SlidePart>{{{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, 0}}, ground, 0.1, Placement::cells);
   ASSERT_EQ(points.size(), 20u * 10u);
   EXPECT_NEAR(points.front().x.x, 0.05, 1e-12);
   EXPECT_NEAR(points.front().x.y, 0.05, 1e-12);
@@ -69,13 +71,15 @@ TEST(Geometry, FillTilesARectangleWithCellCentres) {
 
 TEST(Geometry, FillOnNodesIncludesTheEdges) {
   const Terrain ground{{{-1, 0}, {12, 0}}, false, false, false, 0, 0};
-  const auto points = fill_slide(std::vector<SlidePart>{{{{0, 0}, {10, 0}, {10, 4}, {0, 4}}, 0}}, ground, 0.1, Placement::nodes);
+  const auto points =
+      fill_slide(std::vector<SlidePart>{{{{0, 0}, {10, 0}, {10, 4}, {0, 4}}, 0}}, ground, 0.1, Placement::nodes);
   EXPECT_EQ(points.size(), 101u * 41u);  // [Z20] 3.1
 }
 
 TEST(Geometry, FillKeepsHalfASpacingFromASlopingBed) {
   const Terrain slope{{{0, 5}, {10, 0}, {20, 0}}, false, true, false, 9, 0};
-  const auto points = fill_slide(std::vector<SlidePart>{{{{0, 5}, {10, 0}, {10, 6}, {0, 6}}, 0}}, slope, 0.2, Placement::cells);
+  const auto points =
+      fill_slide(std::vector<SlidePart>{{{{0, 5}, {10, 0}, {10, 6}, {0, 6}}, 0}}, slope, 0.2, Placement::cells);
   const Polyline wall = wall_line(slope, 0.2, Placement::cells);
   ASSERT_FALSE(points.empty());
   for (const SoilPoint& p : points) EXPECT_GE(nearest(wall, p.x).distance, 0.1 - 1e-6);
@@ -84,7 +88,8 @@ TEST(Geometry, FillKeepsHalfASpacingFromASlopingBed) {
 TEST(Geometry, FillGivesEachLayerItsMaterial) {
   const Terrain ground{{{-1, 0}, {5, 0}}, false, false, false, 0, 0};
   const std::vector<SlidePart> layers{{{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, 0}, {{{0, 1}, {2, 1}, {2, 2}, {0, 2}}, 1}};
-  for (const SoilPoint& p : fill_slide(layers, ground, 0.25, Placement::cells)) EXPECT_EQ(p.material, p.x.y > 1 ? 1 : 0);
+  for (const SoilPoint& p : fill_slide(layers, ground, 0.25, Placement::cells))
+    EXPECT_EQ(p.material, p.x.y > 1 ? 1 : 0);
 }
 
 }  // namespace

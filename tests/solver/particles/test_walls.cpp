@@ -1,8 +1,8 @@
-#include "particles/walls.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "particles/walls.hpp"
 
 namespace talus {
 namespace {

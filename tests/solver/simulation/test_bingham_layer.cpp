@@ -17,11 +17,13 @@ constexpr double thickness = 0.5, density = 1500, tau_y = 1000, eta = 900, theta
 const double G = density * 9.81 * std::sin(theta), Y = thickness - tau_y / G, U = G * Y * Y / (2 * eta);
 double closed_form(double y) { return y > Y ? U : U * (1 - (y - Y) * (y - Y) / (Y * Y)); }
 
-/// Relative rms error of the velocity profile in the middle of a long layer that starts with the closed form and is left alone.
+/// Relative rms error of the velocity profile in the middle of a long layer that starts with the closed form and is
+/// left alone.
 double profile_error(Yield yield, Integrator integrator, double dx) {
   Model m;
   m.terrain = {{{-30, 0}, {30, 0}}, false, false, false, 0, 0};
-  m.slide = {{{{-3, 0}, {3, 0}, {3, thickness}, {-3, thickness}}, 0}};  // long enough for the middle not to hear of the ends
+  m.slide = {
+      {{{-3, 0}, {3, 0}, {3, thickness}, {-3, thickness}}, 0}};  // long enough for the middle not to hear of the ends
   m.materials = {{"mud", density, 0, tau_y, eta}};
   m.g = {9.81 * std::sin(theta), -9.81 * std::cos(theta)};
   m.dx = dx;
@@ -30,7 +32,8 @@ double profile_error(Yield yield, Integrator integrator, double dx) {
   m.time.end = 1.0;  // six times the viscous time rho h^2/(2.5 eta)
   Simulation simulation(m, plan_particles(m));
   Soil& soil = simulation.mutable_soil();
-  for (std::size_t i = 0; i < soil.size(); ++i) soil.vx[i] = 0.5 * closed_form(soil.y[i]);  // it has to find the profile
+  for (std::size_t i = 0; i < soil.size(); ++i)
+    soil.vx[i] = 0.5 * closed_form(soil.y[i]);  // it has to find the profile
   while (!simulation.finished()) simulation.step(m.time.end);
   double sum = 0, n = 0;
   for (std::size_t i = 0; i < soil.size(); ++i)
@@ -39,11 +42,18 @@ double profile_error(Yield yield, Integrator integrator, double dx) {
   return std::sqrt(sum / n) / U;
 }
 
-// The mirrored velocity of the wall is capped at b_max = 1.5, which lets the lowest particles slip a little: the error falls
-// with dx (0.125 at 0.05 m, 0.051 at 0.025 m). Half the viscosity or the yield stress would give an error over 0.4.
-TEST(BinghamLayer, ElasticYieldFindsTheClosedForm) { EXPECT_LT(profile_error(Yield::elastic, Integrator::rk2, 0.05), 0.14); }
-TEST(BinghamLayer, RegularizedYieldFindsTheClosedForm) { EXPECT_LT(profile_error(Yield::regularized, Integrator::rk2, 0.05), 0.14); }
-TEST(BinghamLayer, LeapfrogFindsTheClosedForm) { EXPECT_LT(profile_error(Yield::elastic, Integrator::leapfrog, 0.05), 0.14); }
+// The mirrored velocity of the wall is capped at b_max = 1.5, which lets the lowest particles slip a little: the error
+// falls with dx (0.125 at 0.05 m, 0.051 at 0.025 m). Half the viscosity or the yield stress would give an error over
+// 0.4.
+TEST(BinghamLayer, ElasticYieldFindsTheClosedForm) {
+  EXPECT_LT(profile_error(Yield::elastic, Integrator::rk2, 0.05), 0.14);
+}
+TEST(BinghamLayer, RegularizedYieldFindsTheClosedForm) {
+  EXPECT_LT(profile_error(Yield::regularized, Integrator::rk2, 0.05), 0.14);
+}
+TEST(BinghamLayer, LeapfrogFindsTheClosedForm) {
+  EXPECT_LT(profile_error(Yield::elastic, Integrator::leapfrog, 0.05), 0.14);
+}
 
 }  // namespace
 }  // namespace talus

@@ -1,6 +1,6 @@
-#include "simulation/observables.hpp"
-
 #include <gtest/gtest.h>
+
+#include "simulation/observables.hpp"
 
 namespace talus {
 namespace {

@@ -59,7 +59,11 @@ TEST(Rest, HoldsForEveryDensityTreatmentKernelAndIntegrator) {
   };
   for (const Option& option : {Option{"shepard", [](Model& m) { m.numerics.density_filter = DensityFilter::shepard; }},
                                Option{"none", [](Model& m) { m.numerics.density_filter = DensityFilter::none; }},
-                               Option{"wendland", [](Model& m) { m.numerics.kernel = KernelShape::wendland_c2, m.numerics.h_over_dx = 1.5; m.walls.layers = 4; }},
+                               Option{"wendland",
+                                      [](Model& m) {
+                                        m.numerics.kernel = KernelShape::wendland_c2, m.numerics.h_over_dx = 1.5;
+                                        m.walls.layers = 4;
+                                      }},
                                Option{"leapfrog", [](Model& m) { m.numerics.integrator = Integrator::leapfrog; }},
                                Option{"mass_form", [](Model& m) { m.numerics.continuity = Continuity::mass; }},
                                Option{"with_tension", [](Model& m) { m.numerics.tension_cutoff = false; }},
@@ -70,7 +74,8 @@ TEST(Rest, HoldsForEveryDensityTreatmentKernelAndIntegrator) {
     Simulation simulation(m, plan_particles(m));
     while (!simulation.finished()) simulation.step(m.time.end);
     EXPECT_LT(profile_error(simulation, 1.0), 0.05) << option.name;
-    EXPECT_LT(max_speed(simulation.soil()), 0.08) << option.name;  // the regularised law chatters, the others stay below 0.02
+    EXPECT_LT(max_speed(simulation.soil()), 0.08)
+        << option.name;  // the regularised law chatters, the others stay below 0.02
     EXPECT_EQ(simulation.result().penetrated, 0) << option.name;
   }
 }
@@ -78,13 +83,15 @@ TEST(Rest, HoldsForEveryDensityTreatmentKernelAndIntegrator) {
 TEST(Rest, StressFreeStartSettlesToTheSameVerticalStress) {
   Model m = column(2.0, 1.0, 0.1);
   m.numerics.initial_pressure = InitialPressure::stress_free;
-  m.numerics.kernel = KernelShape::cubic_spline, m.numerics.h_over_dx = 1.2;  // the default's wider kernel is 9 % off with ten rows
+  m.numerics.kernel = KernelShape::cubic_spline,
+  m.numerics.h_over_dx = 1.2;          // the default's wider kernel is 9 % off with ten rows
   m.walls.slip = WallSlip::free_slip;  // rough side walls would carry part of the weight, as in a silo
   m.time.end = 2.0;
   Simulation simulation(m, plan_particles(m));
   EXPECT_EQ(simulation.frame().pressure[0], 0.0);
   while (!simulation.finished()) simulation.step(m.time.end);
-  // Squeezed from one side, the elastic law carries part of the weight as a deviator: the vertical stress balances gravity.
+  // Squeezed from one side, the elastic law carries part of the weight as a deviator: the vertical stress balances
+  // gravity.
   EXPECT_LT(profile_error(simulation, 1.0, true), 0.05);
 }
 

@@ -1,5 +1,3 @@
-#include "simulation/simulation.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "math/error.hpp"
 #include "models.hpp"
 #include "simulation/observables.hpp"
+#include "simulation/simulation.hpp"
 
 namespace talus {
 namespace {
@@ -77,7 +76,8 @@ TEST(Simulation, PaperNormStopsShorter) {  // its soil is sqrt(3) times stronger
 TEST(Simulation, WeakerParticlesRunFarther) {
   Model m = collapse(0.05);
   const ParticlePlan plan = plan_particles(m);
-  Simulation strong(m, plan, std::vector<double>(plan.soil.size(), 0.7)), weak(m, plan, std::vector<double>(plan.soil.size(), 0.2));
+  Simulation strong(m, plan, std::vector<double>(plan.soil.size(), 0.7)),
+      weak(m, plan, std::vector<double>(plan.soil.size(), 0.2));
   run(strong, m.time.end), run(weak, m.time.end);
   EXPECT_GT(farthest(weak.soil()), farthest(strong.soil()) + 0.2);
 }
@@ -166,7 +166,8 @@ TEST(Simulation, WholeRightHandSideIsOfSecondOrderInTime) {
     m.time.fixed_step = dt, m.time.end = 0.01;
     Simulation simulation(m, plan_particles(m));
     Soil& s = simulation.mutable_soil();
-    for (std::size_t i = 0; i < s.size(); ++i) s.vx[i] = 0.3 * std::sin(2 * s.y[i]), s.vy[i] = 0.2 * std::cos(3 * s.x[i]), s.rho[i] = 2000;
+    for (std::size_t i = 0; i < s.size(); ++i)
+      s.vx[i] = 0.3 * std::sin(2 * s.y[i]), s.vy[i] = 0.2 * std::cos(3 * s.x[i]), s.rho[i] = 2000;
     run(simulation, m.time.end);
     std::vector<double> x(s.size());
     for (std::size_t i = 0; i < s.size(); ++i) x[static_cast<std::size_t>(s.id[i])] = s.vx[i];
@@ -207,7 +208,9 @@ TEST(Simulation, FrameIsInOrderOfIdWithTheStressOfPlaneStrain) {
     EXPECT_NEAR(d.x, f.displacement[i].x, 1e-8);
     EXPECT_NEAR(d.y, f.displacement[i].y, 1e-8);
     EXPECT_NEAR(f.stress[i][0] + f.stress[i][1] + f.stress[i][2], -3 * f.pressure[i], 1e-6);
-    if (i >= f.n_soil) { EXPECT_EQ(norm(f.velocity[i]), 0.0); }
+    if (i >= f.n_soil) {
+      EXPECT_EQ(norm(f.velocity[i]), 0.0);
+    }
   }
 }
 

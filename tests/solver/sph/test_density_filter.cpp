@@ -1,8 +1,7 @@
-#include "sph/density_filter.hpp"
-
 #include <gtest/gtest.h>
 
 #include "random_soil.hpp"
+#include "sph/density_filter.hpp"
 
 namespace talus {
 namespace {
@@ -17,7 +16,9 @@ TEST(DensityDiffusion, LeavesAHydrostaticProfileAlone) {
   EXPECT_GT(rho_ji, 0.0) << "the lower one is denser";
 }
 
-TEST(DensityDiffusion, FlowsFromDenseToLight) { EXPECT_GT(diffusion_term(0.01, 5.0, 2000, {}, 60, {0.1, 0}, -7.0), 0.0); }
+TEST(DensityDiffusion, FlowsFromDenseToLight) {
+  EXPECT_GT(diffusion_term(0.01, 5.0, 2000, {}, 60, {0.1, 0}, -7.0), 0.0);
+}
 
 TEST(DensityDiffusion, ConservesMassForEqualVolumes) {
   FlowConstants k = constants(0.1);
@@ -64,7 +65,8 @@ TEST(ShepardFilter, DoesNotMixTheDensitiesOfTwoLayers) {
   const CellList cells = sorted(soil, 2 * k.h);
   for (std::size_t i = 0; i < soil.size(); ++i) soil.rho[i] = soil.material[i] == 0 ? 2000 * 1.01 : 1500 * 1.01;
   RightHandSide(k).filter_density(soil, none, cells, no_cells);
-  for (std::size_t i = 0; i < soil.size(); ++i) ASSERT_NEAR(soil.rho[i], soil.material[i] == 0 ? 2000 * 1.01 : 1500 * 1.01, 1e-9);
+  for (std::size_t i = 0; i < soil.size(); ++i)
+    ASSERT_NEAR(soil.rho[i], soil.material[i] == 0 ? 2000 * 1.01 : 1500 * 1.01, 1e-9);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include "sph/kernel.hpp"
-
 #include <gtest/gtest.h>
+
+#include "sph/kernel.hpp"
 
 namespace talus {
 namespace {

@@ -1,7 +1,5 @@
 // The loops against an oracle that knows no cells: every pair, formulas written out once more, in double.
 
-#include "sph/right_hand_side.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -9,6 +7,7 @@
 
 #include "closeness.hpp"
 #include "random_soil.hpp"
+#include "sph/right_hand_side.hpp"
 
 namespace talus {
 namespace {
@@ -71,7 +70,8 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       mass_form += s.rho[i] * w.volume * b * (s.vx[i] * gx + s.vy[i] * gy);
     }
     r.drho[i] = k.numerics.continuity == Continuity::mass ? mass_form : -s.rho[i] * (Lxx + Lyy);
-    if (k.numerics.density_filter == DensityFilter::delta_sph) r.drho[i] += 2 * k.numerics.delta * k.h * k.c_s * diffusion;
+    if (k.numerics.density_filter == DensityFilter::delta_sph)
+      r.drho[i] += 2 * k.numerics.delta * k.h * k.c_s * diffusion;
     const double p_full = law.eos.B * (std::pow(s.rho[i] / law.eos.rho0, 7) - 1), p = std::max(p_full, 0.0);
     const double third = (Lxx + Lyy) / 3, exx = Lxx - third, eyy = Lyy - third, ezz = -third, exy = (Lxy + Lyx) / 2;
     const double norm2_e = exx * exx + eyy * eyy + ezz * ezz + 2 * exy * exy;
@@ -114,8 +114,10 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     };
     for (std::size_t j = 0; j < n; ++j) {
       if (i == j) continue;
-      const double x = s.x[i] - s.x[j], y = s.y[i] - s.y[j], d = std::hypot(x, y), gx = dW(d) * x / d, gy = dW(d) * y / d;
-      const double Pi = viscous(s.vx[i] - s.vx[j], s.vy[i] - s.vy[j], x, y, (s.rho[i] + s.rho[j]) / 2), rr = s.rho[i] * s.rho[j];
+      const double x = s.x[i] - s.x[j], y = s.y[i] - s.y[j], d = std::hypot(x, y), gx = dW(d) * x / d,
+                   gy = dW(d) * y / d;
+      const double Pi = viscous(s.vx[i] - s.vx[j], s.vy[i] - s.vy[j], x, y, (s.rho[i] + s.rho[j]) / 2),
+                   rr = s.rho[i] * s.rho[j];
       r.ax[i] += s.m[j] * (((r.sxx[i] + r.sxx[j]) / rr - Pi) * gx + (r.sxy[i] + r.sxy[j]) / rr * gy);
       r.ay[i] += s.m[j] * ((r.sxy[i] + r.sxy[j]) / rr * gx + ((r.syy[i] + r.syy[j]) / rr - Pi) * gy);
     }
@@ -164,13 +166,18 @@ void compare_with_oracle(const Option& option, Precision precision, double toler
 
 TEST_P(RightHandSideOracle, PlainLoopsEqualEveryPairSummed) { compare_with_oracle(GetParam(), Precision::full, 1e-11); }
 // Twenty terms of 24-bit arithmetic, with cancellation: 2e-6 of the largest value; seen 3e-7.
-TEST_P(RightHandSideOracle, VectorisedLoopsEqualEveryPairSummed) { compare_with_oracle(GetParam(), Precision::single, 2e-6); }
+TEST_P(RightHandSideOracle, VectorisedLoopsEqualEveryPairSummed) {
+  compare_with_oracle(GetParam(), Precision::single, 2e-6);
+}
 
 INSTANTIATE_TEST_SUITE_P(
     Options, RightHandSideOracle,
     testing::Values(Option{"sound", [](FlowConstants&) {}},
                     Option{"regularized", [](FlowConstants& k) { k.rheology.yield = Yield::regularized; }},
-                    Option{"paper_norm", [](FlowConstants& k) { k.rheology.yield = Yield::regularized, k.rheology.shear_rate = ShearRate::paper; }},
+                    Option{"paper_norm",
+                           [](FlowConstants& k) {
+                             k.rheology.yield = Yield::regularized, k.rheology.shear_rate = ShearRate::paper;
+                           }},
                     Option{"paper_norm_elastic", [](FlowConstants& k) { k.rheology.shear_rate = ShearRate::paper; }},
                     Option{"wendland", [](FlowConstants& k) { k.numerics.kernel = KernelShape::wendland_c2; }},
                     Option{"approaching", [](FlowConstants& k) { k.walls.contact = WallContact::approaching; }},
@@ -199,7 +206,8 @@ TEST(RightHandSide, PairsConserveLinearMomentumExactly) {
   const Soil s = evaluated(random_soil(15, 12, 0.1, 5), k);
   Vec2 force;
   double mass = 0, size = 0;
-  for (std::size_t i = 0; i < s.size(); ++i) force += s.m[i] * Vec2{s.ax[i], s.ay[i]}, mass += s.m[i], size += s.m[i] * std::hypot(s.ax[i], s.ay[i]);
+  for (std::size_t i = 0; i < s.size(); ++i)
+    force += s.m[i] * Vec2{s.ax[i], s.ay[i]}, mass += s.m[i], size += s.m[i] * std::hypot(s.ax[i], s.ay[i]);
   EXPECT_NEAR(force.x, mass * 0.7, 1e-13 * size);
   EXPECT_NEAR(force.y, mass * -9.81, 1e-13 * size);
 }
@@ -209,7 +217,8 @@ TEST(RightHandSide, VectorisedPairsConserveLinearMomentumToRounding) {
   const Soil s = evaluated(random_soil(15, 12, 0.1, 5), k, Precision::single);
   Vec2 force;
   double mass = 0, size = 0;
-  for (std::size_t i = 0; i < s.size(); ++i) force += s.m[i] * Vec2{s.ax[i], s.ay[i]}, mass += s.m[i], size += s.m[i] * std::hypot(s.ax[i], s.ay[i]);
+  for (std::size_t i = 0; i < s.size(); ++i)
+    force += s.m[i] * Vec2{s.ax[i], s.ay[i]}, mass += s.m[i], size += s.m[i] * std::hypot(s.ax[i], s.ay[i]);
   EXPECT_NEAR(force.x, mass * 0.7, 1e-7 * size);
   EXPECT_NEAR(force.y, mass * -9.81, 1e-7 * size);
 }
@@ -229,7 +238,10 @@ TEST(RightHandSide, FixedPointKeepsVectorisedSumsRightFarFromTheOrigin) {
 
 TEST(RightHandSide, TurnsWithTheProblem) {
   const double a = 0.61, c = std::cos(a), s = std::sin(a);
-  const auto turn = [&](double& x, double& y) { const double x0 = x; x = c * x0 - s * y, y = s * x0 + c * y; };
+  const auto turn = [&](double& x, double& y) {
+    const double x0 = x;
+    x = c * x0 - s * y, y = s * x0 + c * y;
+  };
   FlowConstants k = constants(0.1, {0.7, -9.81});
   const Soil original = random_soil(13, 11, 0.1, 23);
   Soil turned = original;
@@ -254,7 +266,8 @@ TEST(RightHandSide, MirrorsWithTheProblem) {
   const FlowConstants k = constants(0.1);
   const Soil original = random_soil(13, 11, 0.1, 29);
   Soil mirrored_soil = original;
-  for (std::size_t i = 0; i < original.size(); ++i) mirrored_soil.x[i] *= -1, mirrored_soil.vx[i] *= -1, mirrored_soil.txy[i] *= -1;
+  for (std::size_t i = 0; i < original.size(); ++i)
+    mirrored_soil.x[i] *= -1, mirrored_soil.vx[i] *= -1, mirrored_soil.txy[i] *= -1;
   const Soil before = evaluated(original, k), after = evaluated(mirrored_soil, k);
   for (std::size_t i = 0; i < before.size(); ++i) {
     ASSERT_NEAR(after.ax[i], -before.ax[i], 1e-7);
@@ -267,7 +280,8 @@ TEST(RightHandSide, UniformMotionFeelsNothingButGravity) {
   FlowConstants k = constants(0.1, {0.0, -9.81}, {{"a", 2000, 0.0, 0, 5}});
   Soil soil = random_soil(15, 15, 0.1, 31);
   for (std::size_t i = 0; i < soil.size(); ++i)
-    soil.vx[i] = 3, soil.vy[i] = -2, soil.rho[i] = 2000, soil.tan_phi[i] = 0, soil.txx[i] = soil.tyy[i] = soil.txy[i] = 0;
+    soil.vx[i] = 3, soil.vy[i] = -2, soil.rho[i] = 2000, soil.tan_phi[i] = 0,
+    soil.txx[i] = soil.tyy[i] = soil.txy[i] = 0;
   k.numerics.density_filter = DensityFilter::none;
   const Soil s = evaluated(soil, k);
   for (std::size_t i = 0; i < s.size(); ++i) {

@@ -1,7 +1,5 @@
 // The vectorised loops where the plain ones have no counterpart: lists that last, walls of every kind, threads' shares.
 
-#include "sph/vectorised_flow.hpp"
-
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -14,6 +12,7 @@
 
 #include "closeness.hpp"
 #include "random_soil.hpp"
+#include "sph/vectorised_flow.hpp"
 
 namespace talus {
 namespace {
@@ -75,7 +74,8 @@ TEST(VectorisedFlow, EqualsThePlainLoopsAtWallsOfEveryKind) {
         });
         for_each_wall_real(plain_walls, [&](const std::string& name, const auto& expected) {
           for_each_wall_real(walls, [&](const std::string& other, const auto& actual) {
-            if (name == other) expect_close(actual, expected, 2e-5, name.c_str());  // a smooth wall turns pressure into shear
+            if (name == other)
+              expect_close(actual, expected, 2e-5, name.c_str());  // a smooth wall turns pressure into shear
           });
         });
       }
@@ -107,8 +107,8 @@ TEST(VectorisedFlow, AnyNumberOfThreadsGivesTheSameBits) {
 }
 
 TEST(VectorisedFlow, AWallThatSeesNextToNothingStaysFinite) {
-  // A soil particle within rounding of 2h from the wall particle below it; another one far off changes the fixed point's quantum, so that
-  // some of the many kernel values are tiny: none may give infinity.
+  // A soil particle within rounding of 2h from the wall particle below it; another one far off changes the fixed
+  // point's quantum, so that some of the many kernel values are tiny: none may give infinity.
   FlowConstants k = constants(0.1);
   k.numerics.precision = Precision::single, k.numerics.kernel = KernelShape::wendland_c2;
   for (int m = 0; m < 3000; ++m)

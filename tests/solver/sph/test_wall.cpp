@@ -1,8 +1,7 @@
-#include "sph/wall.hpp"
-
 #include <gtest/gtest.h>
 
 #include "random_soil.hpp"
+#include "sph/wall.hpp"
 
 namespace talus {
 namespace {
@@ -73,10 +72,13 @@ double traction(const Soil& s) {
   return force / (6 * 0.1);
 }
 
-TEST(Wall, RoughWallDragsAtMohrCoulomb) { EXPECT_NEAR(traction(sliding(WallSlip::no_slip, 0)), -1e4 * 0.5, 0.15 * 1e4 * 0.5); }
+TEST(Wall, RoughWallDragsAtMohrCoulomb) {
+  EXPECT_NEAR(traction(sliding(WallSlip::no_slip, 0)), -1e4 * 0.5, 0.15 * 1e4 * 0.5);
+}
 
 TEST(Wall, FrictionOfTheWallScalesTheDrag) {
-  const double rough = traction(sliding(WallSlip::no_slip, 0)), smoother = traction(sliding(WallSlip::friction, std::atan(0.2)));
+  const double rough = traction(sliding(WallSlip::no_slip, 0)),
+               smoother = traction(sliding(WallSlip::friction, std::atan(0.2)));
   EXPECT_LT(smoother, 0.0);
   EXPECT_NEAR(smoother / rough, 0.2 / 0.5, 0.2);  // the second row still shears a little at the soil's own angle
 }

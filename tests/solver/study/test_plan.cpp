@@ -1,6 +1,6 @@
-#include "math/error.hpp"
-
 #include <cstdint>
+
+#include "math/error.hpp"
 #include "studies.hpp"
 #include "study/plan.hpp"
 
