@@ -40,6 +40,7 @@ HWY_INLINE V by_material(const FlowConstants& k, const Soil& soil, std::size_t i
 /// What the sums of a cluster give to its law.
 struct RatesV {
   V Lxx, Lxy, Lyx, Lyy;  ///< velocity gradient [1/s]
+  V expansion;           ///< -drho/rho without diffusion [1/s]
   V diffusion;           ///< 2 delta h c_s sum ..., of rho/rho0 [1/s]
   V wall_distance;       ///< to the nearest acting wall particle's line [m]
 };
@@ -102,8 +103,8 @@ HWY_INLINE void apply_law(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
           sxy = hn::MulAdd(two_eta, exy, txy);
   store_groups(sxx, syy, sxy, p, f.soil.stress.data() + 4 * i, count);
   const V rho0 = constant([](const PointLaw& law) { return law.eos.rho0; });
-  // drho = -rho tr(L) + rho0 diffusion
-  store(hn::Mul(rho0, hn::NegMulAdd(hn::Add(q, one), trace, rates.diffusion)), f.soil.drho.data() + i, count);
+  // drho = -rho expansion + rho0 diffusion
+  store(hn::Mul(rho0, hn::NegMulAdd(hn::Add(q, one), rates.expansion, rates.diffusion)), f.soil.drho.data() + i, count);
   store(gamma_dot, f.soil.gamma_dot.data() + i, count);
 }
 

@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
-template <class Kernel, bool Diffuse, bool OneMaterial>
+template <class Kernel, bool Diffuse, bool OneMaterial, bool ByMass>
 HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
   const D d;
   const Kernel kernel(f.fixed.quantum / k.h);
@@ -34,6 +34,7 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
     hn::LoadInterleaved4(d, f.soil.density.data() + 4 * i, volume, q, rho, material);
     // Sums of V_j (v_j - v_i) r_ij F and V_j (q_j - q_i) F, with -F h^2/sigma for F.
     V Lxx = zero, Lxy = zero, Lyx = zero, Lyy = zero, diffusion = zero;
+    V mass = zero;  // of m_j (v_j - v_i).r_ij F
     const Neighbours near = neighbours(f.soil_soil, c);
     Separations next = separations(X, Y, f.soil.motion.data(), near.begin);
     for (const std::uint32_t* j = near.begin; j != near.end; j += block) {
@@ -48,6 +49,7 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
         const V wx = hn::Mul(VF, hn::Sub(set(motion[2]), vx)), wy = hn::Mul(VF, hn::Sub(set(motion[3]), vy));
         Lxx = hn::MulAdd(wx, x, Lxx), Lxy = hn::MulAdd(wx, y, Lxy);
         Lyx = hn::MulAdd(wy, x, Lyx), Lyy = hn::MulAdd(wy, y, Lyy);
+        if constexpr (ByMass) mass = hn::MulAdd(set(density[2]), hn::MulAdd(wx, x, hn::Mul(wy, y)), mass);
         if constexpr (Diffuse) {
           V dq = hn::Sub(set(density[1]), q);
           if constexpr (!OneMaterial) dq = hn::IfThenElseZero(hn::Eq(set(density[3]), material), dq);
@@ -72,23 +74,32 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
         const V wx = hn::Mul(VF, w.vx), wy = hn::Mul(VF, w.vy);
         Lxx = hn::NegMulAdd(wx, x, Lxx), Lxy = hn::NegMulAdd(wx, y, Lxy);
         Lyx = hn::NegMulAdd(wy, x, Lyx), Lyy = hn::NegMulAdd(wy, y, Lyy);
+        if constexpr (ByMass) mass = hn::NegMulAdd(rho, hn::MulAdd(wx, x, hn::Mul(wy, y)), mass);
         distance = hn::IfThenElse(acts, hn::Min(distance, w.distance), distance);
       }
     }
+    // -drho/rho: the trace of L where the volumes of neighbours count, [Z20] Eq. 1 where their masses do.
+    const V expansion = ByMass ? hn::Div(hn::Mul(to_L, mass), rho) : hn::Add(hn::Mul(to_L, Lxx), hn::Mul(to_L, Lyy));
     apply_law(f, k, soil, ahead, keep, i, count,
-              {hn::Mul(to_L, Lxx), hn::Mul(to_L, Lxy), hn::Mul(to_L, Lyx), hn::Mul(to_L, Lyy),
+              {hn::Mul(to_L, Lxx), hn::Mul(to_L, Lxy), hn::Mul(to_L, Lyx), hn::Mul(to_L, Lyy), expansion,
                hn::Mul(to_diffusion, diffusion), distance});
   }
 }
 
 void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
   with_kernel(k, [&]<class Kernel>(Kernel*) {
+    const auto run = [&]<bool Diffuse, bool OneMaterial>() {
+      if (k.numerics.continuity == Continuity::mass)
+        stress_loop<Kernel, Diffuse, OneMaterial, true>(f, k, soil, ahead, keep, clusters);
+      else
+        stress_loop<Kernel, Diffuse, OneMaterial, false>(f, k, soil, ahead, keep, clusters);
+    };
     if (k.numerics.density_filter != DensityFilter::delta_sph)
-      stress_loop<Kernel, false, true>(f, k, soil, ahead, keep, clusters);
+      run.template operator()<false, true>();
     else if (k.laws.size() == 1)
-      stress_loop<Kernel, true, true>(f, k, soil, ahead, keep, clusters);
+      run.template operator()<true, true>();
     else
-      stress_loop<Kernel, true, false>(f, k, soil, ahead, keep, clusters);
+      run.template operator()<true, false>();
   });
 }
 

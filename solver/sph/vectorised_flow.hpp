@@ -17,10 +17,8 @@ class VectorisedFlow {
   /// values are never used.
   VectorisedFlow(FlowConstants constants, const Soil& soil);
 
-  /// Can these loops do it? The mass form of continuity is there to repeat the paper; only RightHandSide knows it.
-  static bool serves(const Numerics& n) {
-    return n.precision == Precision::single && n.continuity == Continuity::volume;
-  }
+  /// Whether a run with these options takes these loops: all do but those that ask for double precision.
+  static bool serves(const Numerics& n) { return n.precision == Precision::single; }
 
   /// Finds the neighbours anew. Call it when the soil has been sorted, and again before a particle goes further than
   /// `way` [m] from where it is now. No particle has moved further than `moved` [m] since soil_cells was built.
