@@ -55,6 +55,8 @@ Answer metrics(Service& service) {
   m.family("talus_realization_seconds", "summary", "Wall clock of the done runs.");
   m.part("_sum", static_cast<double>(done.wall_clock_ms) / 1000.0);
   m.part("_count", static_cast<double>(done.done));
+  m.family("talus_orphans", "gauge", "Directories of unknown jobs that were moved to DATA/orphans at start.");
+  m.value(done.orphans);
   m.family("talus_disk_left_bytes", "gauge", "Room on the disk of the data directory.");
   m.value(static_cast<double>(disk_left(service.config.data)));
   m.family("talus_http_requests_total", "counter", "Requests answered.");

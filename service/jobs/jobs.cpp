@@ -32,6 +32,11 @@ class NewDirectory {
   }
   NewDirectory(const NewDirectory&) = delete;
   NewDirectory& operator=(const NewDirectory&) = delete;
+  /// Moves it to its final place; still gone unless it is kept.
+  void move_to(const fs::path& place) {
+    rename_durably(path_, place);
+    path_ = place;
+  }
   void keep() { kept_ = true; }
   const fs::path& path() const { return path_; }
 
@@ -169,8 +174,8 @@ std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& in
   const Json demand = validate(study.document, "/inputs/case");
 
   NewJob job{.id = random_hex(16), .process = "influence-zone", .subject = subject};
-  const StudyDirectory directory{data_.job(job.id)};
-  NewDirectory made(directory.root);
+  NewDirectory made(data_.unfinished(job.id));
+  const StudyDirectory directory{made.path()};
   const fs::path scratch = data_.scratch() / (job.id + ".json");
   write_file(scratch, dump(study.document));
   const Json& options = study.document.at("study");
@@ -193,10 +198,11 @@ std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& in
   job.may_stop_early = !plan.at("stop_when_ci_half_width_below_m").is_null();
   job.case_hash = plan.at("case_hash").get<std::string>();
   job.inputs = dump({{"quantity", study.quantity}, {"outputs", outputs}, {"raw", raw}});
+  made.move_to(data_.job(job.id));
   std::optional<Job> row = store_.create(job, answer);
   if (!row) return row;
   made.keep();
-  scheduler_.kick();
+  scheduler_.wake();
   changes_.announce();
   return row;
 }
@@ -207,14 +213,14 @@ std::optional<Job> Jobs::submit_echo(const std::string& subject, const Json& inp
   Json kept = {{"outputs", outputs}, {"raw", raw}, {"pause", inputs.value("pause", 0.0)}, {"inputs", inputs}};
   std::optional<Job> row = store_.create(
       {.id = random_hex(16), .process = "echo", .subject = subject, .title = "echo", .inputs = dump(kept)}, answer);
-  if (row) scheduler_.kick();
+  if (row) scheduler_.wake();
   if (row) changes_.announce();
   return row;
 }
 
 void Jobs::dismiss(const Job& job) {
   store_.dismiss(job.number);
-  scheduler_.kick();
+  scheduler_.wake(true);
   changes_.announce();
 }
 
@@ -223,7 +229,7 @@ std::int64_t Jobs::retry(const Job& job, const Store::Answer& answer) {
     throw Refusal(Reason::conflict, "this job has no realizations");
   if (ended(job.state)) check_queue(job.subject);  // it will be open again
   const std::int64_t retried = store_.retry_failed(job.number, answer);
-  scheduler_.kick();
+  scheduler_.wake();
   changes_.announce();
   return retried;
 }
@@ -241,7 +247,7 @@ bool Jobs::extend(const Job& job, std::int64_t more, const Store::Answer& answer
   if (prepared.end.signal || prepared.end.exit_code != 0)
     throw Refusal(Reason::conflict, prepared.err.empty() ? "the study cannot be extended" : prepared.err);
   const bool fresh = store_.extend(job.number, planned, answer);
-  scheduler_.kick();
+  scheduler_.wake();
   changes_.announce();
   return fresh;
 }

@@ -52,28 +52,29 @@ Scheduler::Scheduler(const Config& config, Store& store, Changes& changes)
 Scheduler::~Scheduler() { drain(); }
 
 void Scheduler::start() {
-  remove_orphans();
+  put_orphans_aside();
   const std::vector<Claim> held = store_.requeue_all();
   if (!held.empty()) log_info("requeued", {{"runs", held.size()}, {"why", "an earlier talusd held them"}});
   thread_ = std::thread([this] { loop(); });
 }
 
-void Scheduler::kick() {
+void Scheduler::wake(bool dismissed) {
   {
     const std::lock_guard lock(mutex_);
-    kicked_ = true;
+    woken_ = true;
+    dismissed_ |= dismissed;
   }
   wake_.notify_one();
 }
 
 void Scheduler::wait_for(milliseconds most) {
   std::unique_lock lock(mutex_);
-  wake_.wait_for(lock, most, [&] { return kicked_ || draining_; });
-  if (!kicked_) return;
-  kicked_ = false;
+  wake_.wait_for(lock, most, [&] { return woken_ || draining_; });
+  if (!woken_) return;
+  woken_ = false;
   look_ = true;
   next_beat_ = {};
-  removing_ = 1;
+  removing_ |= std::exchange(dismissed_, false);
 }
 
 void Scheduler::loop() {
@@ -99,7 +100,7 @@ void Scheduler::tick() {
   reap();
   if (Steady::now() >= next_beat_) beat();
   run_echo();
-  if (removing_ > 0 && Steady::now() >= next_removal_) remove_dismissed();
+  if (removing_ && Steady::now() >= next_removal_) remove_dismissed();
   if (look_) {
     look_ = false;
     fill();
@@ -272,29 +273,48 @@ void Scheduler::run_echo() {
   }
 }
 
-/// Removes the directories of jobs that have been dismissed, once none of their processes runs.
+/// Removes the directories of dismissed jobs, each once none of its processes runs. A directory of any other job, and
+/// one that the queue does not know, stays.
 void Scheduler::remove_dismissed() {
-  removing_ = 0;
-  const std::set<std::string> known = store_.all_ids();
+  removing_ = false;
+  const std::set<std::string> dismissed = store_.dismissed_ids();
   for (const auto& entry : fs::directory_iterator(data_.jobs())) {
-    const std::string id = entry.path().filename().string();
-    if (known.contains(id) || id.starts_with("new-")) continue;
+    if (!dismissed.contains(entry.path().filename().string())) continue;
     const bool works = std::any_of(workers_.begin(), workers_.end(),
                                    [&](const auto& worker) { return worker.second.study.root == entry.path(); });
     const bool publishes = std::any_of(publishers_.begin(), publishers_.end(),
                                        [&](const Publisher& p) { return p.study.root == entry.path(); });
-    if (works || publishes)
-      removing_ = 1;
-    else if (store_.job(id) && !removed(entry.path()))
-      removing_ = 1, next_removal_ = Steady::now() + removal_interval;
+    if (works || publishes) {
+      removing_ = true;
+    } else if (!removed(entry.path())) {
+      removing_ = true;
+      next_removal_ = Steady::now() + removal_interval;
+    }
   }
 }
 
-/// At start: what a killed talusd left between making a directory and recording its job.
-void Scheduler::remove_orphans() {
-  const std::set<std::string> known = store_.all_ids();
-  for (const auto& entry : fs::directory_iterator(data_.jobs()))
-    if (!known.contains(entry.path().filename().string())) removed(entry.path());
+/// At start: moves directories that the queue does not know to DATA/orphans. They may be the results of a queue that
+/// was lost or restored from an older backup. Only unfinished submissions and scratch files are deleted.
+void Scheduler::put_orphans_aside() {
+  std::set<std::string> known = store_.known_ids();
+  known.merge(store_.dismissed_ids());
+  for (const auto& entry : fs::directory_iterator(data_.jobs())) {
+    const std::string name = entry.path().filename().string();
+    if (known.contains(name)) continue;
+    if (name.starts_with(DataDirectory::unfinished_prefix)) {
+      removed(entry.path());
+      continue;
+    }
+    fs::path place = data_.orphans() / name;
+    for (int copy = 2; fs::exists(fs::symlink_status(place)); ++copy)
+      place = data_.orphans() / (name + "-" + std::to_string(copy));
+    fs::create_directories(data_.orphans());
+    fs::rename(entry.path(), place);
+    ++done_.orphans;
+    log_error("orphan", {{"directory", entry.path().string()},
+                         {"moved_to", place.string()},
+                         {"why", "the queue knows no job of this name; was the queue lost or restored?"}});
+  }
   removed(data_.scratch());
   fs::create_directories(data_.scratch());
 }

@@ -24,6 +24,7 @@ struct WorkDone {
   std::atomic<std::int64_t> done{0}, failed{0}, crashed{0}, given_back{0}, stale{0};
   std::atomic<std::int64_t> wall_clock_ms{0};  ///< of the done ones
   std::atomic<int> running{0};
+  std::atomic<int> orphans{0};  ///< directories put aside at start
 };
 
 class Scheduler {
@@ -33,12 +34,13 @@ class Scheduler {
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
 
-  /// Puts back what an earlier talusd held, removes what belongs to no job, and starts to work.
+  /// Puts back what an earlier talusd held, puts directories of no known job aside, and starts to work.
   void start();
   /// Stops claiming, asks the workers to checkpoint, puts their runs back; kills what has not ended within the grace.
   void drain();
-  /// Something has changed: look at the queue now, and at whether the leases still hold.
-  void kick();
+  /// Something has changed: read the queue now, and check whether the leases still hold.
+  /// @param dismissed  a job has been dismissed, whose directory can go
+  void wake(bool dismissed = false);
   const WorkDone& work_done() const { return done_; }
 
  private:
@@ -80,7 +82,7 @@ class Scheduler {
   void settle_publisher(Publisher& publisher, executor::ProcessEnd end);
   void run_echo();
   void remove_dismissed();
-  void remove_orphans();
+  void put_orphans_aside();
   bool room_on_disk();
   void wait_for(std::chrono::milliseconds most);
   StudyDirectory study(const std::string& id) const { return {data_.job(id)}; }
@@ -104,11 +106,11 @@ class Scheduler {
   bool look_ = true;  ///< the queue may hold something to do
   bool echo_waiting_ = false;
   bool told_trouble_ = false;
-  int removing_ = 1;  ///< look for directories of dismissed jobs
+  bool removing_ = true;  ///< look for directories of dismissed jobs
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  bool kicked_ = false;
+  bool woken_ = false, dismissed_ = false;
   std::atomic<bool> draining_{false}, stopped_{false};
   std::thread thread_;
 };

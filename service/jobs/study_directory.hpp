@@ -19,7 +19,11 @@ struct DataDirectory {
   std::filesystem::path jobs() const { return root / "jobs"; }
   std::filesystem::path scratch() const { return root / "scratch"; }
   std::filesystem::path slurm() const { return root / "slurm"; }
+  std::filesystem::path orphans() const { return root / "orphans"; }  ///< directories that the queue did not know
   std::filesystem::path job(const std::string& id) const { return jobs() / id; }
+  /// The directory of a job until its submission is complete; removed when talusd starts.
+  std::filesystem::path unfinished(const std::string& id) const { return jobs() / (unfinished_prefix + id); }
+  static constexpr const char* unfinished_prefix = "new-";
 };
 
 /// The directory of one job: that of a `talus study`, so that every verb of talus reads it.

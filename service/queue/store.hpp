@@ -31,7 +31,9 @@ class Store {
   std::vector<Job> jobs(const JobFilter& filter);
   /// Jobs that are accepted or running, of one subject or of all.
   std::int64_t open_jobs(const std::optional<std::string>& subject);
-  std::set<std::string> all_ids();
+  /// Ids of the jobs that are not dismissed.
+  std::set<std::string> known_ids();
+  std::set<std::string> dismissed_ids();
   Census census();
 
   /// Writes down why no run of an open job is under way; empty: nothing is known.

@@ -74,6 +74,15 @@ std::string placeholders(std::size_t n) {
   return text;
 }
 
+std::set<std::string> ids(Database& database, const std::string& condition) {
+  return database.read([&](SQLite::Database& db) {
+    std::set<std::string> all;
+    for (Statement query(db, "SELECT id FROM jobs WHERE " + condition); query.executeStep();)
+      all.insert(query.getColumn(0).getString());
+    return all;
+  });
+}
+
 }  // namespace
 
 std::optional<Job> Store::create(const NewJob& job, const Answer& answer) {
@@ -151,14 +160,9 @@ std::int64_t Store::open_jobs(const std::optional<std::string>& subject) {
   });
 }
 
-std::set<std::string> Store::all_ids() {
-  return db_.read([&](SQLite::Database& db) {
-    std::set<std::string> ids;
-    for (Statement query(db, "SELECT id FROM jobs WHERE state != 'dismissed'"); query.executeStep();)
-      ids.insert(query.getColumn(0).getString());
-    return ids;
-  });
-}
+std::set<std::string> Store::known_ids() { return ids(db_, "state != 'dismissed'"); }
+
+std::set<std::string> Store::dismissed_ids() { return ids(db_, "state = 'dismissed'"); }
 
 Census Store::census() {
   return db_.read([&](SQLite::Database& db) {
