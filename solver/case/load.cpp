@@ -11,59 +11,15 @@ namespace {
 
 constexpr Names<Placement> placements[] = {{"cells", Placement::cells}, {"nodes", Placement::nodes}};
 
-Material read_default_material(ObjectReader in, Json& resolved) {
-  const Material m = read_material(in, nullptr);
-  resolved = in.finish();
-  return m;
-}
-
-/// Every section in turn; `origins` remembers where bed and slide are written.
-Case read_case(ObjectReader root, const std::filesystem::path& directory, Origins& origins, Json& resolved) {
-  Case c;
-  Json section;
-  const auto take = [&](const char* key) { root.record(key, std::move(section)); };
-  c.title = root.text("title", 1, 200);
-  c.description = root.text("description", 0, 10'000, "");
-  c.model.dx = root.number("particle_spacing_m", {"m", 0.0, 1000.0, true});
-  c.model.placement = root.choice("particle_placement", placements, c.model.placement);
-  c.model.max_particles = static_cast<std::size_t>(
-      root.integer("max_particles", {"", 1.0, 1e8}, static_cast<std::int64_t>(c.model.max_particles)));
-  c.model.g = {0.0, -root.number("gravity_m_s2", {"m/s2", 0.0, 1e4, true}, -c.model.g.y)};
-  const Material material = read_default_material(root.object("material", true), section);
-  const Json material_json = section;
-  take("material");
-  SlideText slide = read_slide(root.object("slide", true), directory, material, material_json, section);
-  take("slide");
-  c.model.terrain = read_terrain(root.object("terrain", true), directory, slide, c.model.dx, origins.bed, section);
-  take("terrain");
-  c.model.slide = std::move(slide.parts);
-  c.model.materials = std::move(slide.materials);
-  origins.outlines = std::move(slide.origins);
-  c.model.rheology = read_rheology(root.object("rheology"), section);
-  take("rheology");
-  c.model.numerics = read_numerics(root.object("numerics"), section);
-  take("numerics");
-  c.model.walls = read_walls(root.object("walls"), section);
-  take("walls");
-  c.model.time = read_time(root.object("time", true), section);
-  take("time");
-  if (root.find("random_field") != nullptr) {
-    c.field = read_field(root.object("random_field"), section);
-    take("random_field");
-  }
-  c.study = read_study(root.object("study"), section);
-  take("study");
-  resolved = root.finish();
-  return c;
-}
-
 LoadedCase load_document(Json document, const std::filesystem::path& directory,
                          std::span<const std::string> overrides) {
   Faults faults;
   const std::vector<Override> applied = apply_overrides(document, overrides, faults);
   LoadedCase out;
   Origins origins;
-  out.value = read_case(ObjectReader(document, "", faults), directory, origins, out.resolved);
+  ObjectReader root(document, "", faults);
+  out.value = read_case(root, directory, origins);
+  out.resolved = root.finish();
   const auto sound = [&](std::initializer_list<const char*> pointers) {
     for (const char* p : pointers)
       if (!faults.none_under(p)) return false;
@@ -81,6 +37,55 @@ LoadedCase load_document(Json document, const std::filesystem::path& directory,
 }
 
 }  // namespace
+
+Case read_case(ObjectReader& in, const std::filesystem::path& directory, Origins& origins) {
+  Case c;
+  Model& m = c.model;
+  in.required_string("title", c.title, {1, 200}, {"One line that names the case."});
+  in.string("description", c.description, {0, 10'000}, {"Where the data come from and what they leave out."});
+  in.required_number("particle_spacing_m", m.dx, {"m", 0.0, 1000.0, true},
+                     {"Spacing dx of the particles at the start; every particle stands for dx by dx of soil.",
+                      "thinnest flow / 10 or finer; [Z20] uses 0.1 and 0.2"});
+  in.choice(
+      "particle_placement", m.placement, placements,
+      {"cells: particles at the centres of square cells; nodes: at lattice nodes, outline edges included, with the "
+       "wall line half a spacing behind the bed.",
+       "nodes as in [Z20] Fig. 3"});
+  in.integer("max_particles", m.max_particles, {"", 1.0, 1e8},
+             {"Refuse to fill more soil and wall particles than this.", "memory; see talus validate"});
+  double gravity = -m.g.y;
+  in.number("gravity_m_s2", gravity, {"m/s2", 0.0, 1e4, true},
+            {"Gravity, downwards.", "9.81 at mid latitudes; n g in a centrifuge"});
+  m.g = {0.0, -gravity};
+  MaterialInput material;
+  in.object("material", "The soil: Mohr-Coulomb yield stress, Bingham viscosity.", Absent::fault,
+            [&](ObjectReader& section) { read_material(section, material); });
+  SlideInput slide;
+  in.object("slide",
+            "The soil that moves: outlines, or the ground surface before the slide and the slip surface beneath it.",
+            Absent::fault, [&](ObjectReader& section) { slide = read_slide(section, directory, material); });
+  in.object("terrain", "The rigid ground. Give bed_m or bed_csv.", Absent::fault,
+            [&](ObjectReader& section) { read_terrain(section, m.terrain, directory, slide, m.dx, origins.bed); });
+  m.slide = std::move(slide.parts);
+  m.materials = std::move(slide.materials);
+  origins.outlines = std::move(slide.origins);
+  in.object("rheology", "How the soil yields.", Absent::defaults,
+            [&](ObjectReader& section) { read_rheology(section, m.rheology); });
+  in.object("numerics", "How the equations are discretised.", Absent::defaults,
+            [&](ObjectReader& section) { read_numerics(section, m.numerics); });
+  in.object("walls", "How the ground acts on the soil.", Absent::defaults,
+            [&](ObjectReader& section) { read_walls(section, m.walls); });
+  in.object("time", "When to stop and what to keep.", Absent::fault,
+            [&](ObjectReader& section) { read_time(section, m.time); });
+  in.object("random_field",
+            "Lognormal random field of tan(phi), covariance exp(-|dx|/lx - |dy|/ly) of its logarithm. Give one "
+            "correlation_length_m, or both of x and y; log_stdev (and log_mean), or cov_tan_phi (and mean_tan_phi). "
+            "Without this section the friction angle is the material's everywhere.",
+            Absent::skip, [&](ObjectReader& section) { read_field(section, c.field.emplace()); });
+  in.object("study", "Monte Carlo over realizations of the random field.", Absent::defaults,
+            [&](ObjectReader& section) { read_study(section, c.study); });
+  return c;
+}
 
 LoadedCase load_case(const std::filesystem::path& path, std::span<const std::string> overrides) {
   Json document = parse_json(read_text(path), path.filename().string());

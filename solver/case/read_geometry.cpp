@@ -1,4 +1,4 @@
-// Terrain and slide: polylines, their shape, and the outlines between ground and slip surface.
+// The keys of terrain and slide: polylines, their shape, and the outlines between ground and slip surface.
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,6 @@ namespace talus {
 namespace {
 
 constexpr Quantity coordinate{"m", -1e6, 1e6};
-constexpr std::size_t most_outlines = 100;
 
 enum class End { wall, open };
 constexpr Names<End> ends[] = {{"wall", End::wall}, {"open", End::open}};
@@ -65,45 +64,35 @@ int index_of(const Material& m, std::vector<Material>& materials) {
   return static_cast<int>(found - materials.begin());
 }
 
-void read_outline(const Json& value, const std::string& pointer, const std::filesystem::path& directory,
-                  const Json& material_json, SlideText& slide, Json& resolved, Faults& faults) {
-  ObjectReader in(value, pointer, faults);
-  Vertices outline = read_vertices(in, "outline", 3, directory);
+/// A material of its own takes from `fallback` what it does not name.
+void read_outline(ObjectReader& in, const std::filesystem::path& directory, const MaterialInput& fallback,
+                  SlideInput& slide) {
+  Vertices outline = read_vertices(in, "outline", {3, most_vertices}, directory,
+                                   {"Vertices [x, y] in order, clockwise or counter-clockwise; no crossing; not below "
+                                    "the bed.",
+                                    "survey"});
+  in.one_form({{{"outline_m"}}, {{"outline_csv"}}});
   int material = 0;
-  if (const Json* partial = in.find("material")) {
-    ObjectReader own(*partial, in.pointer("material"), faults);
-    material = index_of(read_material(own, &material_json), slide.materials);
-    in.record("material", own.finish());
-  }
-  const bool sound = !outline.empty() && check_ring(outline, faults);
+  in.object("material", "What differs from the default material in this outline, for layered slides.", Absent::skip,
+            [&](ObjectReader& own) {
+              MaterialInput m = fallback;
+              own.describe_defaults_as("the default material's");
+              read_material(own, m);
+              material = index_of(m, slide.materials);
+            });
+  const bool sound = !outline.empty() && check_ring(outline, in.faults());
   in.record("outline_m", to_json(outline.points));
-  resolved.push_back(in.finish());
   if (!sound) return;
   slide.parts.push_back({outline.points, material});
   slide.origins.push_back(std::move(outline));
 }
 
-void read_outlines(ObjectReader& in, const Json& list, const std::filesystem::path& directory,
-                   const Json& material_json, SlideText& slide) {
+/// What a survey gives: the ground before the slide, and the surface it slides on.
+void cut_outlines(ObjectReader& in, const Vertices& ground, const Vertices& slip, SlideInput& slide) {
   Json resolved = Json::array();
-  if (!list.is_array() || list.empty() || list.size() > most_outlines)
-    in.fault("outlines",
-             (list.is_array() ? "has " + std::to_string(list.size()) + " entries" : quote(list) + " is no list") +
-                 "; give 1 to " + std::to_string(most_outlines) + " outlines");
-  else
-    for (std::size_t k = 0; k < list.size(); ++k)
-      read_outline(list[k], pointer_to(in.pointer("outlines"), k), directory, material_json, slide, resolved,
-                   in.faults());
-  in.record("outlines", resolved);
-}
-
-/// What a consultant has: the ground before the slide, and the surface it slides on.
-void read_surfaces(ObjectReader& in, const std::filesystem::path& directory, SlideText& slide) {
-  const Vertices ground = read_vertices(in, "ground_surface", 2, directory);
-  const Vertices slip = read_vertices(in, "slip_surface", 2, directory);
-  Json resolved = Json::array();
-  if (!ground.empty() && !slip.empty() &&
-      check_left_to_right(ground, true, in.faults()) & check_left_to_right(slip, true, in.faults())) {
+  const bool ground_sound = !ground.empty() && check_left_to_right(ground, true, in.faults());
+  const bool slip_sound = !slip.empty() && check_left_to_right(slip, true, in.faults());
+  if (ground_sound && slip_sound) {
     for (auto& outline : between_surfaces(ground.points, slip.points)) {
       resolved.push_back({{"outline_m", to_json(outline)}});
       slide.origins.push_back({outline, slip.source});
@@ -111,73 +100,93 @@ void read_surfaces(ObjectReader& in, const std::filesystem::path& directory, Sli
     }
     if (slide.parts.empty()) in.fault("", "holds no soil: the slip surface nowhere lies below the ground surface");
   }
-  in.record("outlines", resolved);
+  in.record("outlines", std::move(resolved));
 }
 
-/// Height of the end walls: given, or 5 particle spacings over the slide and over the walled ends of the bed.
-double read_wall_top(ObjectReader& in, const Terrain& t, const SlideText& slide, double dx) {
+/// By default 5 particle spacings over the slide and over the walled ends of the bed.
+void read_wall_top(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
   double highest = -1e6;
   for (const SlidePart& part : slide.parts)
     for (const Vec2& v : part.outline) highest = std::max(highest, v.y);
   const double left = t.left_wall && !t.bed.empty() ? t.bed.front().y : -1e6;
   const double right = t.right_wall && !t.bed.empty() ? t.bed.back().y : -1e6;
-  const double top =
-      in.number("wall_top_m", coordinate, std::clamp(std::max({highest, left, right}) + 5.0 * dx, -1e6, 1e6));
-  if (top <= std::max(left, right) && in.faults().none_under(in.pointer("wall_top_m")))
-    in.fault("wall_top_m",
-             to_text(top) + " does not lie above the bed at the walled end, y = " + to_text(std::max(left, right)));
-  return top;
+  const double bed = std::max(left, right);
+  t.wall_top = std::clamp(std::max(highest, bed) + 5.0 * dx, -1e6, 1e6);
+  in.number("wall_top_m", t.wall_top, coordinate,
+            {"Height y of the top of the end walls; above the bed there. Open beds only.", "site",
+             "5 particle spacings over the highest point of slide and walled bed ends"});
+  if (t.wall_top <= bed && in.faults().none_under(in.pointer("wall_top_m")))
+    in.fault("wall_top_m", to_text(t.wall_top) + " does not lie above the bed at the walled end, y = " + to_text(bed));
 }
 
-void read_ends(ObjectReader& in, Terrain& t, const SlideText& slide, double dx) {
+void read_end(ObjectReader& in, std::string_view key, bool& wall, std::string_view sentence) {
+  End end = wall ? End::wall : End::open;
+  in.choice(key, end, ends, {sentence, "site"});
+  wall = end == End::wall;
+}
+
+void read_ends(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
   if (t.closed) {
     for (const char* key : {"left_end", "right_end", "wall_top_m"})
       if (in.find(key) != nullptr) in.fault(key, "has no meaning for a closed bed");
     return;
   }
-  t.left_wall = in.choice("left_end", ends, t.left_wall ? End::wall : End::open) == End::wall;
-  t.right_wall = in.choice("right_end", ends, t.right_wall ? End::wall : End::open) == End::wall;
-  t.wall_top = read_wall_top(in, t, slide, dx);
+  read_end(in, "left_end", t.left_wall,
+           "What stands on the bed's first vertex: a vertical wall, or nothing. Open beds only.");
+  read_end(in, "right_end", t.right_wall,
+           "What stands on the bed's last vertex: a vertical wall, or nothing. Open beds only.");
+  read_wall_top(in, t, slide, dx);
 }
 
 }  // namespace
 
-SlideText read_slide(ObjectReader in, const std::filesystem::path& directory, const Material& material,
-                     const Json& material_json, Json& resolved) {
-  SlideText slide{{}, {}, {material}};
-  const Json* outlines = in.find("outlines");
-  bool surfaces = false;
-  for (const char* key : {"ground_surface_m", "ground_surface_csv", "slip_surface_m", "slip_surface_csv"})
-    surfaces = in.find(key) != nullptr || surfaces;
-  if (outlines != nullptr && surfaces)
-    in.fault("", "is given both by outlines and by surfaces; give one of the two");
-  else if (outlines == nullptr && !surfaces)
-    in.fault("outlines", "is missing (or ground_surface_m and slip_surface_m)");
-  else if (outlines != nullptr)
-    read_outlines(in, *outlines, directory, material_json, slide);
-  else
-    read_surfaces(in, directory, slide);
-  resolved = in.finish();
+SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, const MaterialInput& fallback) {
+  SlideInput slide{{}, {}, {fallback}};
+  const bool outlines = in.find("outlines") != nullptr;
+  const auto given = [&](const char* key) { return in.find(key) != nullptr; };
+  const bool ground_given = given("ground_surface_m") || given("ground_surface_csv");
+  const bool surfaces = given("slip_surface_m") || given("slip_surface_csv") || ground_given;
+  const bool by_surfaces = surfaces && !outlines;
+  if (outlines && surfaces) in.fault("", "is given both by outlines and by surfaces; give one of the two");
+  if (!outlines && !surfaces) in.fault("outlines", "is missing (or ground_surface_m and slip_surface_m)");
+  in.objects("outlines", {1, 100}, {"Closed outlines that do not overlap, each of one material.", "survey"},
+             "One closed outline. Give outline_m or outline_csv.",
+             [&](ObjectReader& outline) { read_outline(outline, directory, fallback, slide); });
+  const Vertices ground =
+      read_vertices(in, "ground_surface", {2, most_vertices}, directory,
+                    {"Ground surface before the slide, from left to right.", "survey"}, by_surfaces);
+  const Vertices slip = read_vertices(in, "slip_surface", {2, most_vertices}, directory,
+                                      {"Slip surface, from left to right; soil between it and the ground surface "
+                                       "slides, in one or several pieces.",
+                                       "survey"},
+                                      by_surfaces);
+  in.one_form({{{"outlines"}},
+               {{"ground_surface_m", "slip_surface_m"}},
+               {{"ground_surface_m", "slip_surface_csv"}},
+               {{"ground_surface_csv", "slip_surface_m"}},
+               {{"ground_surface_csv", "slip_surface_csv"}}});
+  if (by_surfaces) cut_outlines(in, ground, slip, slide);
   return slide;
 }
 
-Terrain read_terrain(ObjectReader in, const std::filesystem::path& directory, const SlideText& slide, double dx,
-                     Vertices& bed, Json& resolved) {
-  Terrain t;
-  bed = read_vertices(in, "bed", 2, directory);
-  t.closed = in.flag("closed", t.closed);
+void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& directory, const SlideInput& slide,
+                  double dx, Vertices& bed) {
+  bed = read_vertices(
+      in, "bed", {2, most_vertices}, directory,
+      {"Bed polyline [x, y]. Open: x strictly increasing, soil above it; closed: a ring with the soil inside.",
+       "survey"});
+  in.one_form({{{"bed_m"}}, {{"bed_csv"}}});
+  in.flag("closed", t.closed, {"The bed is a ring, its last vertex joined to its first.", "survey"});
   const bool sound =
       !bed.empty() && (t.closed ? check_ring(bed, in.faults()) : check_left_to_right(bed, false, in.faults()));
   if (!sound) bed.points.clear();
   t.bed = bed.points;
   if (t.closed && signed_area(t.bed) < 0.0) std::reverse(t.bed.begin(), t.bed.end());
   in.record("bed_m", to_json(t.bed));
-  double leftmost = sound ? t.bed.front().x : 0.0;
-  for (const Vec2& v : t.bed) leftmost = std::min(leftmost, v.x);
-  t.left_boundary = in.number("left_boundary_m", coordinate, leftmost);
+  if (sound) t.left_boundary = std::ranges::min(t.bed, {}, &Vec2::x).x;
+  in.number("left_boundary_m", t.left_boundary, coordinate,
+            {"x from which influence zones are measured.", "[Z20] section 4", "least x of the bed"});
   read_ends(in, t, slide, dx);
-  resolved = in.finish();
-  return t;
 }
 
 }  // namespace talus

@@ -1,10 +1,10 @@
-// Material, rheology, numerics, walls, time: keys, units, ranges. Defaults are those of the structs.
+// The keys of material, rheology, numerics, walls and time. Defaults are those of the structs.
 
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
 #include "case/sections.hpp"
+#include "math/angle.hpp"
 
 namespace talus {
 namespace {
@@ -36,111 +36,139 @@ std::vector<double> every(double interval, double end) {
   return times;
 }
 
-std::vector<double> read_snapshots(ObjectReader& in, double end) {
-  const auto interval = in.maybe_number("snapshot_interval_s", duration);
-  std::vector<double> times = in.numbers("snapshot_times_s", {"s", 0.0, 1e7}, most_snapshots);
-  if (interval && in.find("snapshot_times_s") != nullptr)
-    in.fault("snapshot_interval_s", "is given beside snapshot_times_s; give one of the two");
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    if (times[k] > end) in.faults().add(pointer_to(in.pointer("snapshot_times_s"), k), "lies after end_s");
-    if (k > 0 && times[k] <= times[k - 1])
-      in.faults().add(pointer_to(in.pointer("snapshot_times_s"), k), "does not exceed the time before it");
+/// Snapshots are given as times or as an interval, which the resolved case spells out.
+void read_snapshots(ObjectReader& in, TimeControl& t) {
+  in.numbers("snapshot_times_s", t.snapshots, {"s", 0.0, 1e7}, {0, most_snapshots},
+             {"Times of the snapshots, increasing, up to end_s; start and end are always kept.", "user", "",
+              ">= 0 and <= end_s"});
+  std::optional<double> interval;
+  in.optional_number(
+      "snapshot_interval_s", interval, duration,
+      {"Snapshots at every multiple of this; not together with snapshot_times_s; at most 10000 until end_s.", "user",
+       "none"});
+  in.exclude("snapshot_interval_s", "snapshot_times_s");
+  for (std::size_t k = 0; k < t.snapshots.size(); ++k) {
+    const std::string place = pointer_to(in.pointer("snapshot_times_s"), k);
+    if (t.snapshots[k] > t.end) in.faults().add(place, "lies after end_s");
+    if (k > 0 && t.snapshots[k] <= t.snapshots[k - 1]) in.faults().add(place, "does not exceed the time before it");
   }
-  if (interval && end / *interval > static_cast<double>(most_snapshots))
+  if (interval && t.end / *interval > static_cast<double>(most_snapshots))
     in.fault("snapshot_interval_s", "makes more than " + std::to_string(most_snapshots) + " snapshots until end_s");
-  else if (interval && times.empty())
-    times = every(*interval, end);
-  return times;
-}
-
-/// false, true (the default rule) or the rule itself.
-std::optional<StopAtRest> read_stop(ObjectReader& in) {
-  const Json* value = in.find("stop_at_rest");
-  in.record("stop_at_rest", false);
-  if (value == nullptr || *value == false) return {};
-  const Json defaults = Json::object();
-  ObjectReader rule(*value == true ? defaults : *value, in.pointer("stop_at_rest"), in.faults());
-  StopAtRest stop;
-  stop.speed = rule.number("speed_m_s", {"m/s", 0.0, 1000.0, true}, stop.speed);
-  stop.hold = rule.number("hold_s", {"s", 0.0, 1e6}, stop.hold);
-  in.record("stop_at_rest", rule.finish());
-  return stop;
+  else if (interval && t.snapshots.empty())
+    t.snapshots = every(*interval, t.end);
+  in.remove_record("snapshot_interval_s");
 }
 
 }  // namespace
 
-double radians(double degrees) { return degrees * (std::numbers::pi / 180.0); }
-
-Material read_material(ObjectReader& in, const Json* base) {
-  const auto standard = [&](const char* key, std::optional<double> otherwise = {}) {
-    return base == nullptr ? otherwise : std::optional(base->at(key).get<double>());
-  };
-  Material m;
-  m.name = in.text("name", 1, 100, base == nullptr ? m.name : base->at("name").get<std::string>());
-  m.rho0 = in.number("density_kg_m3", {"kg/m3", 0.0, 1e5, true}, standard("density_kg_m3"));
-  m.phi = radians(in.number("friction_angle_deg", friction_angle, standard("friction_angle_deg")));
-  m.c = in.number("cohesion_Pa", {"Pa", 0.0, 1e9}, standard("cohesion_Pa", m.c));
-  m.eta = in.number("viscosity_Pa_s", {"Pa s", 0.0, 1e9}, standard("viscosity_Pa_s", m.eta));
-  return m;
+void read_material(ObjectReader& in, MaterialInput& m) {
+  in.string("name", m.name, {1, 100}, {"What the material is called in messages and results."});
+  in.required_number("density_kg_m3", m.rho0, {"kg/m3", 0.0, 1e5, true},
+                     {"Reference density of the soil in place.", "laboratory; [Z20] Eq. 3"});
+  in.required_number("friction_angle_deg", m.friction_angle_deg, friction_angle,
+                     {"Friction angle phi of the yield stress c + p tan(phi); the median if the random field has no "
+                      "log_mean.",
+                      "laboratory; [Z20] Eq. 5"});
+  m.phi = radians(m.friction_angle_deg);
+  in.number("cohesion_Pa", m.c, {"Pa", 0.0, 1e9}, {"Cohesion c of the yield stress.", "laboratory; [Z20] Eq. 5"});
+  in.number("viscosity_Pa_s", m.eta, {"Pa s", 0.0, 1e9},
+            {"Viscosity once the soil has yielded.", "rheometer; [Z20] Eq. 4"});
 }
 
-Rheology read_rheology(ObjectReader in, Json& resolved) {
-  Rheology r;
-  r.shear_rate = in.choice("shear_rate", shear_rates, r.shear_rate);
-  r.yield = in.choice("yield", yields, r.yield);
-  r.gamma_dot_min = in.number("min_shear_rate_1_s", {"1/s", 0.0, 1000.0, true}, r.gamma_dot_min);
-  r.G = in.maybe_number("shear_modulus_Pa", {"Pa", 0.0, 1e15, true});
-  resolved = in.finish();
-  return r;
+void read_rheology(ObjectReader& in, Rheology& r) {
+  in.choice("shear_rate", r.shear_rate, shear_rates,
+            {"Equivalent shear rate: consistent sqrt(2 dev:dev), with which simple shear gives [Z20] Eq. 5; paper "
+             "sqrt(2/3 dev:dev), Eq. 7 as printed, which makes the soil stronger.",
+             "[Z20] Eqs. 5, 7"});
+  in.choice("yield", r.yield, yields,
+            {"elastic: elasto-viscoplastic stress with an exact yield limit, which comes to rest; regularized: "
+             "equivalent viscosity, which creeps.",
+             "[Z20] Eq. 6 for regularized"});
+  in.number("min_shear_rate_1_s", r.gamma_dot_min, {"1/s", 0.0, 1000.0, true},
+            {"Smallest shear rate in the regularized law.", "[Z20] section 2"});
+  in.optional_number("shear_modulus_Pa", r.G, {"Pa", 0.0, 1e15, true},
+                     {"Numerical shear modulus of the elastic law.", "numerical", "0.1 density sound_speed^2"});
 }
 
-Numerics read_numerics(ObjectReader in, Json& resolved) {
-  Numerics n;
-  n.kernel = in.choice("kernel", kernels, n.kernel);
-  n.h_over_dx = in.number("smoothing_ratio", {"", 1.0, 2.0}, n.h_over_dx);
-  n.c_s = in.maybe_number("sound_speed_m_s", {"m/s", 0.0, 1e5, true});
-  n.alpha = in.number("artificial_viscosity_alpha", {"", 0.0, 10.0}, n.alpha);
-  n.beta = in.number("artificial_viscosity_beta", {"", 0.0, 10.0}, n.beta);
-  n.continuity = in.choice("continuity", continuities, n.continuity);
-  n.density_filter = in.choice("density_filter", filters, n.density_filter);
-  n.filter_interval = static_cast<int>(in.integer("filter_interval_steps", {"", 1.0, 1e6}, n.filter_interval));
-  n.delta = in.number("delta_sph_coefficient", {"", 0.0, 1.0}, n.delta);
-  n.tension_cutoff = in.flag("tension_cutoff", n.tension_cutoff);
-  n.initial_pressure = in.choice("initial_pressure", initial_pressures, n.initial_pressure);
-  n.integrator = in.choice("integrator", integrators, n.integrator);
-  n.precision = in.choice("precision", precisions, n.precision);
-  n.cfl = in.number("cfl", {"", 0.0, 1.0, true}, n.cfl);
-  resolved = in.finish();
-  return n;
+void read_numerics(ObjectReader& in, Numerics& n) {
+  in.choice("kernel", n.kernel, kernels, {"Smoothing kernel.", "Monaghan & Lattanzio 1985; Wendland 1995"});
+  in.number("smoothing_ratio", n.h_over_dx, {"", 1.0, 2.0},
+            {"Smoothing length over particle spacing, h/dx.",
+             "numerical noise of the front, see tests/validation; [Z20] does not state it"});
+  in.optional_number("sound_speed_m_s", n.c_s, {"m/s", 0.0, 1e5, true},
+                     {"Numerical speed of sound of the equation of state.", "Monaghan 1994: density then varies by 1 %",
+                      "10 sqrt(2 g H), H from the slide's highest point to the lowest of the bed"});
+  in.number("artificial_viscosity_alpha", n.alpha, {"", 0.0, 10.0},
+            {"Artificial viscosity, linear term.", "Monaghan 1992"});
+  in.number("artificial_viscosity_beta", n.beta, {"", 0.0, 10.0},
+            {"Artificial viscosity, quadratic term.", "Monaghan 1992"});
+  in.choice("continuity", n.continuity, continuities,
+            {"volume: density rate rho_i sum V_j, exact across jumps of density; mass: sum m_j as printed.",
+             "[Z20] Eq. 1 for mass"});
+  in.choice("density_filter", n.density_filter, filters,
+            {"Density regularisation: delta-SPH diffusion, Shepard filter every filter_interval_steps, or none.",
+             "Fourtakas et al. 2019 for delta_sph; [Z20] section 2 for shepard"});
+  in.integer("filter_interval_steps", n.filter_interval, {"steps", 1.0, 1e6},
+             {"Steps between two Shepard filters.", "common SPH practice"});
+  in.number("delta_sph_coefficient", n.delta, {"", 0.0, 1.0},
+            {"Coefficient of the delta-SPH diffusion.", "Antuono et al. 2010"});
+  in.flag("tension_cutoff", n.tension_cutoff,
+          {"Negative pressure is cut to zero: loose soil carries no tension.", "soil mechanics"});
+  in.choice("initial_pressure", n.initial_pressure, initial_pressures,
+            {"hydrostatic: from the weight of the soil above; stress_free: none.", "[Z20] Eq. 10, its p0"});
+  in.choice("integrator", n.integrator, integrators,
+            {"rk2: midpoint, 2 evaluations a step; leapfrog: symplectic, 1 evaluation.", "[Z20] section 2 for rk2"});
+  in.choice(
+      "precision", n.precision, precisions,
+      {"Precision of the sums over soil pairs: single runs vectorised, double runs the plain reference loops; the "
+       "state is double in both.",
+       "this program"});
+  in.number("cfl", n.cfl, {"", 0.0, 1.0, true},
+            {"Courant number of the time step when fixed_step_s is not given.", "Monaghan 1992"});
 }
 
-Walls read_walls(ObjectReader in, Json& resolved) {
-  Walls w;
-  w.contact = in.choice("contact", contacts, w.contact);
-  w.slip = in.choice("slip", slips, w.slip);
-  const std::optional<double> phi = in.maybe_number("friction_angle_deg", friction_angle);
+void read_walls(ObjectReader& in, Walls& w) {
+  in.choice(
+      "contact", w.contact, contacts,
+      {"always: a wall acts on every particle near it; approaching: only on particles that come nearer, which keeps "
+       "a pile chattering.",
+       "[Z20] section 2.1 for approaching"});
+  in.choice("slip", w.slip, slips,
+            {"no_slip: velocity vanishes at the wall; friction: the wall's own friction angle; free_slip: no shear.",
+             "Takeda 1994, Morris 1997"});
+  std::optional<double> angle;
+  in.optional_number(
+      "friction_angle_deg", angle, friction_angle,
+      {"Friction angle of the wall; needed by slip friction, unused otherwise.", "interface shear test", "none"});
   if (w.slip == WallSlip::friction && in.find("friction_angle_deg") == nullptr)
     in.fault("friction_angle_deg",
              "is missing: slip \"friction\" needs the wall's angle; " + friction_angle.describe());
-  w.phi = radians(phi.value_or(0.0));
-  w.b_max = in.number("max_velocity_ratio", {"", 1.0, 100.0}, w.b_max);
-  w.layers = static_cast<int>(in.integer("layers", {"", 1.0, 20.0}, w.layers));
-  resolved = in.finish();
-  return w;
+  w.phi = radians(angle.value_or(0.0));
+  in.number("max_velocity_ratio", w.b_max, {"", 1.0, 100.0},
+            {"Largest ratio of the mirrored velocity of a wall particle, b_max.", "Morris 1997"});
+  in.integer("layers", w.layers, {"", 1.0, 20.0},
+             {"Layers of wall particles; they must fill the kernel's support: at least 2 smoothing_ratio - 1/2.",
+              "[Z20] section 3"});
 }
 
-TimeControl read_time(ObjectReader in, Json& resolved) {
-  TimeControl t;
-  t.end = in.number("end_s", duration);
-  t.fixed_step = in.maybe_number("fixed_step_s", duration);
-  t.max_step = in.maybe_number("max_step_s", duration);
-  if (t.fixed_step && t.max_step) in.fault("max_step_s", "has no effect beside fixed_step_s; give one of the two");
-  t.snapshots = read_snapshots(in, t.end);
-  t.stop_at_rest = read_stop(in);
-  resolved = in.finish();
-  resolved.erase("snapshot_interval_s");
-  resolved["snapshot_times_s"] = t.snapshots;
-  return t;
+void read_time(ObjectReader& in, TimeControl& t) {
+  in.required_number("end_s", t.end, duration, {"Simulated time at which the run ends."});
+  in.optional_number(
+      "fixed_step_s", t.fixed_step, duration,
+      {"Constant time step; not together with max_step_s.", "[Z20] Table 3 uses 3e-4", "none, the step follows cfl"});
+  in.optional_number("max_step_s", t.max_step, duration, {"Upper bound of the Courant step.", "user", "none"});
+  in.exclude("max_step_s", "fixed_step_s");
+  read_snapshots(in, t);
+  StopAtRest stop;
+  const bool stops = in.switchable(
+      "stop_at_rest", {"End early once the slide rests: false, true for the default rule, or the rule itself."},
+      [&](ObjectReader& rule) {
+        rule.number("speed_m_s", stop.speed, {"m/s", 0.0, 1000.0, true},
+                    {"Root-mean-square speed below which the slide rests."});
+        rule.number("hold_s", stop.hold, {"s", 0.0, 1e6}, {"For how long the speed must stay below."});
+      });
+  if (stops) t.stop_at_rest = stop;
+  in.record("snapshot_times_s", t.snapshots);
 }
 
 }  // namespace talus

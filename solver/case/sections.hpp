@@ -1,42 +1,48 @@
 #pragma once
-// The sections of a case file, each JSON object -> struct.
+// The sections of a case file. Each function declares the keys of one section and reads them into a struct, whose
+// values on entry are the defaults.
 
 #include <filesystem>
 #include <vector>
 
 #include "case/case.hpp"
+#include "case/checks.hpp"
 #include "case/vertices.hpp"
 
 namespace talus {
 
-/// Degrees of a file -> radians.
-double radians(double degrees);
+/// The whole case.
+/// @param directory  where CSV files lie
+/// @param origins    returns where the vertices of bed and slide are written
+Case read_case(ObjectReader& in, const std::filesystem::path& directory, Origins& origins);
+
+/// A material and its friction angle as written, so that a layer which inherits the angle repeats it exactly.
+struct MaterialInput : Material {
+  double friction_angle_deg = 0.0;
+};
 
 // read_physics.cpp
-/// `base`: the resolved default material that this one overrides in part, or null for the default itself.
-Material read_material(ObjectReader& in, const Json* base);
-Rheology read_rheology(ObjectReader in, Json& resolved);
-Numerics read_numerics(ObjectReader in, Json& resolved);
-Walls read_walls(ObjectReader in, Json& resolved);
-TimeControl read_time(ObjectReader in, Json& resolved);
+void read_material(ObjectReader& in, MaterialInput& m);
+void read_rheology(ObjectReader& in, Rheology& r);
+void read_numerics(ObjectReader& in, Numerics& n);
+void read_walls(ObjectReader& in, Walls& w);
+void read_time(ObjectReader& in, TimeControl& t);
 
 // read_geometry.cpp
-/// The slide, and where each of its outlines is written.
-struct SlideText {
+/// The slide and where each of its outlines is written.
+struct SlideInput {
   std::vector<SlidePart> parts;
   std::vector<Vertices> origins;    ///< of the parts' vertices
   std::vector<Material> materials;  ///< the default one, then those of the outlines, each once
 };
-/// @param material  the default material and its resolved form
-SlideText read_slide(ObjectReader in, const std::filesystem::path& directory, const Material& material,
-                     const Json& material_json, Json& resolved);
+SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, const MaterialInput& fallback);
 /// @param slide  for the default height of the end walls; @param dx  particle spacing [m]
-/// @param bed    where the bed's vertices are written
-Terrain read_terrain(ObjectReader in, const std::filesystem::path& directory, const SlideText& slide, double dx,
-                     Vertices& bed, Json& resolved);
+/// @param bed    returns where the bed's vertices are written
+void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& directory, const SlideInput& slide,
+                  double dx, Vertices& bed);
 
 // read_statistics.cpp
-FieldSpec read_field(ObjectReader in, Json& resolved);
-StudySpec read_study(ObjectReader in, Json& resolved);
+void read_field(ObjectReader& in, FieldSpec& spec);
+void read_study(ObjectReader& in, StudySpec& s);
 
 }  // namespace talus

@@ -98,6 +98,21 @@ std::optional<std::string> csv_text(const Json& value, const std::string& pointe
   return {};
 }
 
+void declare_vertices(ObjectReader& in, const std::string& inline_key, const std::string& csv_key, Size count,
+                      const KeyText& text) {
+  const Json point = {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", number_schema(coordinate)}};
+  in.declare(inline_key, {{"type", "array"}, {"minItems", count.least}, {"maxItems", count.most}, {"items", point}},
+             text,
+             "Unit: m; range: each coordinate >= -1e6 and <= 1e6, " + std::to_string(count.least) + " to " +
+                 std::to_string(count.most) + " vertices; ");
+  in.declare(
+      csv_key, {{"type", "string"}, {"minLength", 1}, {"pattern", R"(^[^./\\][^/\\]*$)"}},
+      {"The same as a CSV file beside the case, given by its plain name: two columns x, y in metres, separated by "
+       "comma, semicolon or tab; one header line, blank lines and # comments are skipped.",
+       text.source},
+      "");
+}
+
 }  // namespace
 
 std::string Vertices::place(std::size_t k) const {
@@ -129,9 +144,10 @@ Vertices read_csv(std::string_view text, const std::string& name, Faults& faults
   return out;
 }
 
-Vertices read_vertices(ObjectReader& in, std::string_view key, std::size_t least,
-                       const std::filesystem::path& directory, bool required) {
+Vertices read_vertices(ObjectReader& in, std::string_view key, Size count, const std::filesystem::path& directory,
+                       const KeyText& text, bool required) {
   const std::string inline_key = std::string(key) + "_m", csv_key = std::string(key) + "_csv";
+  declare_vertices(in, inline_key, csv_key, count, text);
   const Json* points = in.find(inline_key);
   const Json* csv = in.find(csv_key);
   if (points != nullptr && csv != nullptr) in.fault(csv_key, "is given beside " + inline_key + "; give one of the two");
@@ -141,11 +157,11 @@ Vertices read_vertices(ObjectReader& in, std::string_view key, std::size_t least
   Vertices out{{}, in.pointer(inline_key)};
   if (points != nullptr)
     out = read_inline(*points, out.source, in.faults());
-  else if (const auto text = csv_text(*csv, in.pointer(csv_key), directory, in.faults()))
-    out = read_csv(*text, csv->get<std::string>(), in.faults());
-  if (in.faults().size() == before && out.points.size() < least)
+  else if (const auto content = csv_text(*csv, in.pointer(csv_key), directory, in.faults()))
+    out = read_csv(*content, csv->get<std::string>(), in.faults());
+  if (in.faults().size() == before && out.points.size() < count.least)
     in.faults().add(out.source, "has " + std::to_string(out.points.size()) + " vertices, at least " +
-                                    std::to_string(least) + " are needed");
+                                    std::to_string(count.least) + " are needed");
   return in.faults().size() == before ? out : Vertices{};
 }
 

@@ -25,11 +25,11 @@ struct Vertices {
   std::string place(std::size_t k) const;
 };
 
-/// Reads `KEY_m` or `KEY_csv`, whichever is there, with at least `least` vertices.
+/// Declares and reads `KEY_m` or `KEY_csv`, whichever is there.
 /// @param directory  where CSV files lie
 /// @return no vertices when there was a fault or, unless `required`, neither key
-Vertices read_vertices(ObjectReader& in, std::string_view key, std::size_t least,
-                       const std::filesystem::path& directory, bool required = true);
+Vertices read_vertices(ObjectReader& in, std::string_view key, Size count, const std::filesystem::path& directory,
+                       const KeyText& text, bool required = true);
 
 /// Two columns x, y [m]; separator comma, semicolon or tab; one header line, blank lines and # comments are skipped.
 Vertices read_csv(std::string_view text, const std::string& name, Faults& faults);

@@ -1,8 +1,9 @@
-// talus schema NAME: prints a JSON Schema; without a name lists them.
+// talus schema: prints a JSON Schema, the names of the schemas, or the keys of a case.
 
 #include <iostream>
 #include <memory>
 
+#include "case/schema.hpp"
 #include "case/words.hpp"
 #include "cli/schemas.hpp"
 #include "cli/verbs.hpp"
@@ -10,9 +11,20 @@
 namespace talus::cli {
 namespace {
 
+std::vector<std::pair<std::string, std::string>> all_schemas() {
+  auto all = schemas();
+  all.emplace(all.begin(), "case", case_schema().dump(2) + "\n");
+  return all;
+}
+
+Exit print_keys() {
+  for (const CaseKey& key : case_keys()) std::cout << key.path << "\t" << key.description << "\n";
+  return Exit::ok;
+}
+
 Exit print_schema(const std::string& name) {
   std::vector<std::string> known;
-  for (const auto& [schema, text] : schemas()) {
+  for (const auto& [schema, text] : all_schemas()) {
     known.push_back(schema);
     if (schema == name) std::cout << text;
     if (schema == name) return Exit::ok;
@@ -27,9 +39,12 @@ Exit print_schema(const std::string& name) {
 
 void add_schema(CLI::App& app, Action& action) {
   const auto name = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("schema", "print the JSON Schema of a file, or list the schemas");
-  verb->add_option("NAME", *name, "which one; none: list them");
-  verb->callback([&action, name] { action = [name] { return print_schema(*name); }; });
+  const auto keys = std::make_shared<bool>(false);
+  CLI::App* verb = app.add_subcommand("schema", "Print the JSON Schema of a file, or list the schemas");
+  verb->add_option("NAME", *name, "Schema to print; without it the names are listed");
+  verb->add_flag("--keys", *keys, "List the keys of a case that --set takes, with meaning, unit, range and default");
+  verb->callback(
+      [&action, name, keys] { action = [name, keys] { return *keys ? print_keys() : print_schema(*name); }; });
 }
 
 }  // namespace talus::cli

@@ -1,10 +1,11 @@
-// The schema's own house: every key described, its defaults those that the reader fills in.
+// The published schema is the one that the reader's declarations give, and it describes every key.
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
 #include "case/load.hpp"
+#include "case/schema.hpp"
 #include "schema_check.hpp"
 
 namespace talus {
@@ -22,6 +23,11 @@ void for_each_key(const json& schema, const std::string& pointer,
     if (child.contains("properties")) for_each_key(child, here, f);
     if (child.contains("items") && child["items"].contains("properties")) for_each_key(child["items"], here + "/0", f);
   }
+}
+
+TEST(CaseSchema, IsTheOneThatTheReaderDeclares) {
+  const std::string published = test::slurp(test::source("schemas/case.schema.json"));
+  EXPECT_TRUE(published == case_schema().dump(2) + "\n") << "out of date: talus schema case > schemas/case.schema.json";
 }
 
 TEST(CaseSchema, DescribesEveryKey) {

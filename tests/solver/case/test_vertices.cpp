@@ -50,7 +50,7 @@ TEST(ReadVertices, TakesPlainNamesOnly) {
     Faults faults;
     const Json document = {{"bed_csv", name}};
     ObjectReader in(document, "/terrain", faults);
-    read_vertices(in, "bed", 2, "/");
+    read_vertices(in, "bed", {2, most_vertices}, "/", {"The bed."});
     ASSERT_EQ(faults.size(), 1u) << name;
     EXPECT_NE(faults.all()[0].message.find("is not the plain name of a CSV file"), std::string::npos) << name;
   }
