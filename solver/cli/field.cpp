@@ -7,7 +7,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <random>
 
 #include "case/load.hpp"
@@ -16,6 +15,7 @@
 #include "cli/xi_file.hpp"
 #include "figures/profile.hpp"
 #include "io/vtkhdf.hpp"
+#include "math/angle.hpp"
 #include "monte_carlo/realization.hpp"
 #include "random_field/random_field.hpp"
 
@@ -24,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 struct FieldOptions {
   fs::path case_file, xi_file, out;
@@ -46,7 +44,7 @@ FieldOnParticles field_on(const ParticlePlan& plan, const Strength& strength) {
   FieldOnParticles field;
   field.tan_phi = strength.tan_phi;
   for (const SoilPoint& point : plan.soil) field.position.push_back(point.x);
-  for (const double tan_phi : strength.tan_phi) field.phi_deg.push_back(degrees * std::atan(tan_phi));
+  for (const double tan_phi : strength.tan_phi) field.phi_deg.push_back(degrees(std::atan(tan_phi)));
   return field;
 }
 
@@ -79,7 +77,7 @@ ordered_json summary(const FieldOnParticles& field, const Strength& strength, co
   return {{"particles", field.position.size()},
           {"captured_variance", strength.summary.captured_variance},
           {"terms", strength.summary.terms},
-          {"friction_angle_deg", {{"mean", degrees * strength.summary.mean_phi}, {"min", *lo}, {"max", *hi}}},
+          {"friction_angle_deg", {{"mean", degrees(strength.summary.mean_phi)}, {"min", *lo}, {"max", *hi}}},
           {"realization", identity.realization ? ordered_json(*identity.realization) : ordered_json()},
           {"seed", identity.realization ? ordered_json(identity.seed) : ordered_json()},
           {"xi", strength.xi}};
@@ -90,7 +88,7 @@ std::string subtitle(const Strength& strength, const FieldOptions& options) {
   text += options.realization       ? "realization " + std::to_string(*options.realization)
           : options.xi_file.empty() ? std::string("median")
                                     : std::string("given coefficients");
-  text += ": mean " + figures::fixed(degrees * strength.summary.mean_phi, 2) + "°";
+  text += ": mean " + figures::fixed(degrees(strength.summary.mean_phi), 2) + "°";
   if (strength.summary.terms > 0) {
     text += "; " + std::to_string(strength.summary.terms) + " terms carry " +
             figures::fixed(100 * strength.summary.captured_variance, 1) + " % of the variance";
@@ -102,7 +100,7 @@ void draw(const FieldOnParticles& field, const Model& model, const figures::Stam
   Frame frame;
   frame.n_soil = field.position.size();
   frame.position = field.position;
-  for (const double tan_phi : field.tan_phi) frame.phi.push_back(std::atan(tan_phi));
+  frame.tan_phi = field.tan_phi;
   const figures::Snapshot shot{&frame, figures::Colour::friction_angle, "Before the slide"};
   figures::plot_sequence({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
 }

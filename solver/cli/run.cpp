@@ -24,6 +24,7 @@
 #include "io/history.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
+#include "math/angle.hpp"
 #include "monte_carlo/realization.hpp"
 #include "simulation/simulation.hpp"
 
@@ -170,7 +171,7 @@ void print_summary(const RunResult& r, const RunIdentity& identity) {
   if (r.field.terms > 0)
     std::printf(
         "random field          %10lld terms, %.1f %% of the variance, mean friction angle %.2f deg, seed %llu\n",
-        static_cast<long long>(r.field.terms), 100.0 * r.field.captured_variance, r.field.mean_phi * 180.0 / M_PI,
+        static_cast<long long>(r.field.terms), 100.0 * r.field.captured_variance, degrees(r.field.mean_phi),
         static_cast<unsigned long long>(identity.seed));
   std::printf("wall clock            %10.2f s   on %d thread%s\ndigest                %s\n", r.wall_clock, r.threads,
               r.threads == 1 ? "" : "s", r.digest.c_str());

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "figures/canvas.hpp"
+#include "math/angle.hpp"
 
 namespace talus::figures {
 
@@ -41,7 +41,7 @@ double colour_value(const Frame& frame, std::size_t i, Colour colour) {
     case Colour::speed:
       return norm(frame.velocity[i]);
     case Colour::friction_angle:
-      return frame.phi[i] * 180.0 / std::numbers::pi;
+      return degrees(std::atan(frame.tan_phi[i]));
     case Colour::displacement:
       return norm(frame.displacement[i]);
     case Colour::pressure:

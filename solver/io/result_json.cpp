@@ -3,10 +3,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "io/files.hpp"
+#include "math/angle.hpp"
 #include "math/error.hpp"
 
 namespace talus {
@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr double radian = 180.0 / std::numbers::pi;  ///< in degrees
 constexpr const char* ending_names[] = {"end_time", "at_rest", "interrupted"};
 
 void refuse_not_finite(const ordered_json& node, const std::string& pointer) {
@@ -124,7 +123,7 @@ RunResult read_run(const Reader& root) {
           .at_rest = root.boolean("at_rest"),
           .digest = root.digest("digest"),
           .field = {.captured_variance = field.number("captured_variance", 0.0),
-                    .mean_phi = field.number("mean_friction_angle_deg", 0.0) / radian,
+                    .mean_phi = radians(field.number("mean_friction_angle_deg", 0.0)),
                     .terms = field.integer("terms")}};
 }
 
@@ -164,7 +163,7 @@ ordered_json result_json(const RunResult& result, const Provenance& provenance) 
       {"digest", result.digest},
       {"field",
        {{"captured_variance", result.field.captured_variance},
-        {"mean_friction_angle_deg", result.field.mean_phi * radian},
+        {"mean_friction_angle_deg", degrees(result.field.mean_phi)},
         {"terms", result.field.terms}}},
       {"provenance",
        {{"version", provenance.version},

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 void check_lengths(const Frame& f) {
   const std::size_t n = f.position.size();
   const std::size_t lengths[] = {f.displacement.size(), f.velocity.size(),   f.density.size(), f.pressure.size(),
-                                 f.phi.size(),          f.shear_rate.size(), f.stress.size()};
+                                 f.tan_phi.size(),      f.shear_rate.size(), f.stress.size()};
   if (n == 0 || f.n_soil > n ||
       std::any_of(std::begin(lengths), std::end(lengths), [n](std::size_t m) { return m != n; }))
     throw std::invalid_argument("snapshot: the frame is empty or its arrays differ in length");

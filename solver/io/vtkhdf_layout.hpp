@@ -2,12 +2,13 @@
 // What stands where in a VTKHDF file: shared by writer, reader and sidecar.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <span>
 
 #include "io/hdf5.hpp"
+#include "math/angle.hpp"
 #include "simulation/frame.hpp"
 
 namespace talus::vtkhdf {
@@ -19,8 +20,6 @@ struct Field {
   void (*get)(const Frame& frame, std::size_t i, float* to);
   void (*set)(Frame& frame, std::size_t i, const float* from);
 };
-
-inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
 inline void get_vector(Vec2 v, float* to) {
   to[0] = static_cast<float>(v.x);
@@ -50,8 +49,8 @@ inline constexpr std::array<Field, 7> fields = {{
     scalar_field<&Frame::density>("density"),
     scalar_field<&Frame::pressure>("pressure"),
     {"friction_angle_deg", 1,
-     [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>(f.phi[i] * degrees_per_radian); },
-     [](Frame& f, std::size_t i, const float* from) { f.phi[i] = *from / degrees_per_radian; }},
+     [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>(degrees(std::atan(f.tan_phi[i]))); },
+     [](Frame& f, std::size_t i, const float* from) { f.tan_phi[i] = std::tan(radians(*from)); }},
     scalar_field<&Frame::shear_rate>("shear_rate"),
     // VTK's order of a symmetric tensor: XX YY ZZ XY YZ XZ.
     {"stress", 6,

@@ -38,7 +38,7 @@ void resize(Frame& f, std::size_t n) {
   f.velocity.resize(n);
   f.density.resize(n);
   f.pressure.resize(n);
-  f.phi.resize(n);
+  f.tan_phi.resize(n);
   f.shear_rate.resize(n);
   f.stress.resize(n);
 }

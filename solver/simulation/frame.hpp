@@ -23,7 +23,7 @@ struct Frame {
   std::vector<Vec2> velocity;                 ///< [m/s]
   std::vector<double> density;                ///< [kg/m3]
   std::vector<double> pressure;               ///< [Pa], positive in compression
-  std::vector<double> phi;                    ///< friction angle [rad]; 0 for walls
+  std::vector<double> tan_phi;                ///< tangent of the friction angle [-]; 0 for walls
   std::vector<double> shear_rate;             ///< gamma_dot [1/s]
   std::vector<std::array<double, 4>> stress;  ///< sigma xx, yy, zz, xy [Pa], positive in tension
 };

@@ -344,7 +344,7 @@ Frame Simulation::frame() const {
   f.time = time_, f.step = steps_, f.n_soil = soil_.size();
   const std::size_t n = soil_.size() + walls_.size();
   for (auto* array : {&f.position, &f.displacement, &f.velocity}) array->resize(n);
-  for (auto* array : {&f.density, &f.pressure, &f.phi, &f.shear_rate}) array->resize(n);
+  for (auto* array : {&f.density, &f.pressure, &f.tan_phi, &f.shear_rate}) array->resize(n);
   f.stress.resize(n);
   Soil unpacked;
   if (fast_) fast_->unpack(unpacked);
@@ -354,7 +354,7 @@ Frame Simulation::frame() const {
     f.position[k] = soil_.position(i), f.displacement[k] = soil_.position(i) - origin(soil_.id[i]),
     f.velocity[k] = soil_.velocity(i);
     f.density[k] = soil_.rho[i], f.pressure[k] = derived.p[i];
-    f.phi[k] = std::atan(soil_.tan_phi[i]), f.shear_rate[k] = derived.gamma_dot[i];
+    f.tan_phi[k] = soil_.tan_phi[i], f.shear_rate[k] = derived.gamma_dot[i];
     const Sym2 s = derived.stress(i);
     f.stress[k] = {s.xx, s.yy, -3.0 * derived.p[i] - s.xx - s.yy, s.xy};  // tr sigma = -3 p
   }

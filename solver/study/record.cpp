@@ -1,7 +1,8 @@
 #include "study/record.hpp"
 
 #include <cstdint>
-#include <numbers>
+
+#include "math/angle.hpp"
 
 namespace talus {
 
@@ -9,7 +10,7 @@ Record done_record(std::int64_t index, const RunResult& result) {
   return {.index = index,
           .done = true,
           .measures = result.measures,
-          .mean_phi_deg = result.field.mean_phi * 180.0 / std::numbers::pi,
+          .mean_phi_deg = degrees(result.field.mean_phi),
           .captured_variance = result.field.captured_variance,
           .steps = result.steps,
           .wall_clock = result.wall_clock,

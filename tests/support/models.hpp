@@ -1,20 +1,19 @@
 #pragma once
 // Small models for tests.
 
-#include <numbers>
-
+#include "math/angle.hpp"
 #include "simulation/model.hpp"
 
 namespace talus::testing_support {
 
-constexpr double degrees = std::numbers::pi / 180.0;
+constexpr double degree = radians(1.0);
 
 /// A box of soil, width x height, between two walls, filled to the brim from a flat bed.
 inline Model column(double width, double height, double dx, double phi_deg = 25.0) {
   Model m;
   m.terrain = {{{0, 0}, {width, 0}}, false, true, true, 1.5 * height, 0.0};
   m.slide = {{{{0, 0}, {width, 0}, {width, height}, {0, height}}, 0}};
-  m.materials = {{"soil", 2000, phi_deg * degrees, 0, 0}};
+  m.materials = {{"soil", 2000, phi_deg * degree, 0, 0}};
   m.dx = dx;
   m.time.end = 1.0;
   return m;

@@ -1,8 +1,9 @@
 #pragma once
 // A frame whose every number differs.
 
-#include <numbers>
+#include <cmath>
 
+#include "math/angle.hpp"
 #include "simulation/frame.hpp"
 
 namespace talus::test {
@@ -16,7 +17,7 @@ inline Frame three_particles() {
   frame.displacement = {{0, 0}, {3, 4}, {0, 1}, {0, 0}};
   frame.velocity = {{1, 0}, {0.6, -0.8}, {0, 7}, {0, 0}};
   frame.pressure = {1000, 0, 25000, 1e9};
-  frame.phi = {20 * std::numbers::pi / 180, 25 * std::numbers::pi / 180, 30 * std::numbers::pi / 180, 0};
+  frame.tan_phi = {std::tan(radians(20)), std::tan(radians(25)), std::tan(radians(30)), 0};
   return frame;
 }
 

@@ -85,7 +85,7 @@ TEST(Profile, SvgOfManyParticlesStaysSmall) {
   Frame frame;
   for (int i = 0; i < 12600; ++i) {
     frame.position.push_back({0.1 * (i % 360), 0.1 * (i / 360)});
-    frame.phi.push_back(0.4 + 0.1 * std::sin(0.01 * i));
+    frame.tan_phi.push_back(0.4 + 0.1 * std::sin(0.01 * i));
   }
   frame.n_soil = frame.position.size();
   const std::filesystem::path path = directory.path() / "a.svg";

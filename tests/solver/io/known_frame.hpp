@@ -1,9 +1,10 @@
 #pragma once
 // A frame whose numbers follow from a particle's number and the step: test_vtkhdf_vtk.py knows the same formulas.
 
+#include <cmath>
 #include <cstdint>
-#include <numbers>
 
+#include "math/angle.hpp"
 #include "simulation/frame.hpp"
 
 namespace talus::test {
@@ -26,7 +27,7 @@ inline Frame known_frame(std::size_t n, std::size_t n_soil, std::size_t k) {
     f.velocity.push_back({value(4), value(5)});
     f.density.push_back(value(6));
     f.pressure.push_back(value(7));
-    f.phi.push_back((static_cast<double>(i % 128) / 4.0 + static_cast<double>(k) / 64.0) * std::numbers::pi / 180.0);
+    f.tan_phi.push_back(std::tan(radians(static_cast<double>(i % 128) / 4.0 + static_cast<double>(k) / 64.0)));
     f.shear_rate.push_back(value(8));
     f.stress.push_back({value(9), value(10), value(11), value(12)});
   }

@@ -1,7 +1,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "io/result_json.hpp"
@@ -18,6 +17,7 @@
 
 #include "faults.hpp"
 #include "io/files.hpp"
+#include "math/angle.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus {
@@ -51,7 +51,7 @@ RunResult sample_result() {
           .left_domain = 2,
           .at_rest = true,
           .digest = "0123456789abcdef",
-          .field = {.captured_variance = 0.016, .mean_phi = 25.0 * std::numbers::pi / 180.0, .terms = 5}};
+          .field = {.captured_variance = 0.016, .mean_phi = radians(25.0), .terms = 5}};
 }
 
 Provenance sample_provenance() {

@@ -35,9 +35,11 @@ void expect_equal(const Frame& found, const Frame& wanted) {
   EXPECT_EQ(found.pressure, wanted.pressure);
   EXPECT_EQ(found.shear_rate, wanted.shear_rate);
   EXPECT_EQ(found.stress, wanted.stress);
-  ASSERT_EQ(found.phi.size(), wanted.phi.size());
-  for (std::size_t i = 0; i < wanted.phi.size(); ++i)
-    EXPECT_NEAR(found.phi[i], wanted.phi[i], wanted.phi[i] * std::numeric_limits<float>::epsilon()) << i;
+  ASSERT_EQ(found.tan_phi.size(), wanted.tan_phi.size());
+  for (std::size_t i = 0; i < wanted.tan_phi.size(); ++i)
+    // Stored as an angle in single precision.
+    EXPECT_NEAR(found.tan_phi[i], wanted.tan_phi[i], 2 * wanted.tan_phi[i] * std::numeric_limits<float>::epsilon())
+        << i;
 }
 
 /// Every array of a file by its path, as numbers.

@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr double thickness = 0.5, density = 1500, tau_y = 1000, eta = 900, theta = 20 * degrees;
+constexpr double thickness = 0.5, density = 1500, tau_y = 1000, eta = 900, theta = 20 * degree;
 const double G = density * 9.81 * std::sin(theta), Y = thickness - tau_y / G, U = G * Y * Y / (2 * eta);
 double closed_form(double y) { return y > Y ? U : U * (1 - (y - Y) * (y - Y) / (Y * Y)); }
 

@@ -125,8 +125,8 @@ TEST(Rest, APileBelowItsFrictionAngleStaysAndAWateryOneFlows) {
   const auto travel = [](double phi_deg) {
     Model m = column(2.0, 1.0, 0.1);
     m.terrain = {{{0, 0}, {6, 0}}, false, true, false, 1.2, 0.0};
-    m.slide = {{{{0, 0}, {3, 0}, {0, 3 * std::tan(15 * degrees)}}, 0}};  // face at 15 degrees against the left wall
-    m.materials[0].phi = phi_deg * degrees;
+    m.slide = {{{{0, 0}, {3, 0}, {0, 3 * std::tan(15 * degree)}}, 0}};  // face at 15 degrees against the left wall
+    m.materials[0].phi = phi_deg * degree;
     m.dx = 0.05;
     m.time.end = 1.0;
     Simulation simulation(m, plan_particles(m));

@@ -119,7 +119,7 @@ TEST(Simulation, DivergenceNamesStepTimeAndParticle) {
 TEST(Simulation, SoilThatLeavesThroughAnOpenEndIsCountedAndKept) {
   Model m = collapse(0.05);
   m.terrain.bed = {{0, 0}, {1.2, 0}};
-  m.materials[0].phi = 5 * degrees;
+  m.materials[0].phi = 5 * degree;
   m.time.end = 1.0;
   Simulation simulation(m, plan_particles(m));
   run(simulation, m.time.end);
@@ -136,10 +136,10 @@ TEST(Simulation, ABlockOnASmootherWallSlidesAtTheWallsFriction) {
     Model m;
     m.terrain = {{{-1, 0}, {12, 0}}, false, false, false, 0, 0};
     m.slide = {{{{0, 0}, {3, 0}, {3, 0.5}, {0, 0.5}}, 0}};
-    m.materials = {{"soil", 2000, 45 * degrees, 3000, 0}};
-    m.g = {9.81 * std::sin(30 * degrees), -9.81 * std::cos(30 * degrees)};
+    m.materials = {{"soil", 2000, 45 * degree, 3000, 0}};
+    m.g = {9.81 * std::sin(30 * degree), -9.81 * std::cos(30 * degree)};
     m.dx = 0.1;
-    m.walls.slip = slip, m.walls.phi = phi_wall_deg * degrees;
+    m.walls.slip = slip, m.walls.phi = phi_wall_deg * degree;
     m.time.end = 0.8;
     m.numerics.initial_pressure = InitialPressure::hydrostatic;
     if (slip == WallSlip::friction) m.materials[0].c = 0;
@@ -147,9 +147,9 @@ TEST(Simulation, ABlockOnASmootherWallSlidesAtTheWallsFriction) {
     run(simulation, m.time.end);
     return linear_momentum(simulation.soil()).x / (2000 * 3 * 0.5);
   };
-  const double free_fall = 9.81 * std::sin(30 * degrees) * 0.8;
+  const double free_fall = 9.81 * std::sin(30 * degree) * 0.8;
   EXPECT_NEAR(speed_after(WallSlip::free_slip, 0), free_fall, 0.01 * free_fall);
-  const double expected = 9.81 * (std::sin(30 * degrees) - std::cos(30 * degrees) * std::tan(15 * degrees)) * 0.8;
+  const double expected = 9.81 * (std::sin(30 * degree) - std::cos(30 * degree) * std::tan(15 * degree)) * 0.8;
   EXPECT_NEAR(speed_after(WallSlip::friction, 15), expected, 0.1 * expected);
   EXPECT_LT(speed_after(WallSlip::no_slip, 0), 0.05);
 }
