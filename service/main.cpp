@@ -73,11 +73,11 @@ int serve(Config config) {
   const DataDirectory data{config.data};
   for (const auto& directory : {data.root, data.jobs(), data.scratch()}) std::filesystem::create_directories(directory);
   const Descriptor lock =
-      wait_for_lock(data.lock(), false, std::chrono::seconds(1), "another talusd is at work in " + data.root.string());
+      wait_for_lock(data.lock(), false, std::chrono::seconds(1), "another talusd is using " + data.root.string());
   // When talusd was killed its workers die with it, but not at once; two of them in one directory would spoil it.
   const Descriptor workers_lock =
       wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
-                    "workers of an earlier talusd still run in " + data.root.string() + "; end them first");
+                    "workers of an earlier talusd still run in " + data.root.string() + "; stop them first");
 
   Store store(data.database(), system_now);
   Changes changes;
@@ -101,7 +101,8 @@ int serve(Config config) {
                 [&](const Incoming& request) { return answer(request, router, service, tokens); });
   config.port = server.bind(config.address, config.port);
   if (config.port == 0)
-    throw FileError("cannot listen on " + config.address + ": the port is taken, or the address is not ours");
+    throw FileError("cannot listen on " + config.address +
+                    ": the port is in use, or the address does not belong to this host");
   scheduler.start();
   std::thread http([&] { server.serve(); });
   std::cout << "talusd " << TALUS_VERSION << " listens on " << url_of(config) << std::endl;

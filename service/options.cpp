@@ -53,62 +53,63 @@ Options read_options(int argc, char** argv) {
 
   CLI::App app{"talusd: Talus as a service", "talusd"};
   app.set_version_flag("--version", std::string("talusd ") + TALUS_VERSION);
-  app.set_config("--config", "", "file of the same options: name = value");
-  app.add_option("--data", config.data, "directory for the queue and all results; created");
-  app.add_option("--listen", listen, "ADDRESS:PORT; port 0: any free one; other than loopback needs --tokens")
+  app.set_config("--config", "", "configuration file with the same options, one per line: name = value");
+  app.add_option("--data", config.data, "directory for the queue and all results; created if missing");
+  app.add_option("--listen", listen,
+                 "address and port to listen on; port 0 picks a free one; other than loopback requires --tokens")
       ->capture_default_str();
   app.add_option("--executor", place, "where runs are executed: local (here) or slurm (array jobs)")
       ->check(CLI::IsMember({"local", "slurm"}))
       ->capture_default_str();
-  app.add_option("--slurm", slurm, "with --executor slurm: file that says how");
-  app.add_option("--workers", config.workers, "runs at a time with --executor local")
+  app.add_option("--slurm", slurm, "configuration file of --executor slurm");
+  app.add_option("--workers", config.workers, "number of concurrent runs with --executor local")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  app.add_option("--threads", config.threads, "OpenMP threads of each run")
+  app.add_option("--threads", config.threads, "OpenMP threads per run")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
-  app.add_option("--tokens", config.tokens, "file of tokens; who has none is refused");
-  app.add_option("--talus", config.program, "the talus program; otherwise the one beside talusd");
-  app.add_option("--models", config.models, "directory of cases served over UM-Bridge");
-  app.add_option("--public-url", config.public_url, "what absolute links begin with, behind a proxy");
-  app.add_option("--attempts", config.attempts, "crashes of a run before it counts as failed")
+  app.add_option("--tokens", config.tokens, "token file; requests without a valid token are rejected");
+  app.add_option("--talus", config.program, "path of the talus program; default: the one beside talusd");
+  app.add_option("--models", config.models, "directory of cases to serve over UM-Bridge");
+  app.add_option("--public-url", config.public_url, "base URL of absolute links when talusd is behind a proxy");
+  app.add_option("--attempts", config.attempts, "number of crashes after which a run counts as failed")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
-  app.add_option("--time-limit", time_limit, "seconds that one run may take")
+  app.add_option("--time-limit", time_limit, "wall-clock limit of a run [s]")
       ->check(CLI::Range(1, 30 * 86400))
       ->capture_default_str();
-  app.add_option("--grace", grace, "seconds for runs to checkpoint when talusd is stopped")
+  app.add_option("--grace", grace, "time for runs to write a checkpoint when talusd is stopped [s]")
       ->check(CLI::Range(0, 3600))
       ->capture_default_str();
-  app.add_option("--lease", lease, "seconds after which a run that nobody holds is given out again")
+  app.add_option("--lease", lease, "time after which a run whose worker no longer responds is requeued [s]")
       ->check(CLI::Range(3, 3600))
       ->capture_default_str();
-  app.add_option("--memory", memory_mib, "MiB of address space of a run; 0: by its size; negative: no limit")
+  app.add_option("--memory", memory_mib, "address-space limit of a run [MiB]; 0: from its size; negative: no limit")
       ->capture_default_str();
   app.add_option("--nice", config.niceness, "niceness of runs")->check(CLI::Range(0, 19))->capture_default_str();
   app.add_option("--max-body", body_mib, "MiB of a request")->check(CLI::Range(0.001, 1024.0))->capture_default_str();
-  app.add_option("--max-streams", config.streams, "clients that may wait for events at a time")
+  app.add_option("--max-streams", config.streams, "maximum number of open event streams")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  app.add_option("--http-threads", config.http_threads, "connections served at a time")
+  app.add_option("--http-threads", config.http_threads, "maximum number of concurrent connections")
       ->check(CLI::Range(64, 4096))
       ->capture_default_str();
-  app.add_option("--max-particles", config.quotas.particles, "of a case")->capture_default_str();
-  app.add_option("--max-steps", config.quotas.steps, "of a run")->capture_default_str();
-  app.add_option("--max-realizations", config.quotas.realizations, "of a job")
+  app.add_option("--max-particles", config.quotas.particles, "maximum number of particles of a case")->capture_default_str();
+  app.add_option("--max-steps", config.quotas.steps, "maximum number of time steps of a run")->capture_default_str();
+  app.add_option("--max-realizations", config.quotas.realizations, "maximum number of realizations of a job")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  app.add_option("--max-core-hours", config.quotas.core_hours, "of a job, estimated")->capture_default_str();
-  app.add_option("--max-jobs", config.quotas.open_jobs, "that wait or run, in all")->capture_default_str();
-  app.add_option("--max-jobs-each", config.quotas.open_jobs_of_one, "that wait or run, of one subject")
+  app.add_option("--max-core-hours", config.quotas.core_hours, "maximum estimated cost of a job [core hours]")->capture_default_str();
+  app.add_option("--max-jobs", config.quotas.open_jobs, "maximum number of open jobs")->capture_default_str();
+  app.add_option("--max-jobs-each", config.quotas.open_jobs_of_one, "maximum number of open jobs per subject")
       ->capture_default_str();
-  app.add_option("--min-disk", min_disk_mib, "MiB that must stay free")
+  app.add_option("--min-disk", min_disk_mib, "free disk space below which no job is accepted [MiB]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  app.add_option("--new-token", options.new_token, "print a new token and its line for the tokens file, and end")
+  app.add_option("--new-token", options.new_token, "print a new token and its line for the token file, then exit")
       ->expected(2)
       ->type_name("submit|read SUBJECT");
-  app.footer("Exit codes: 0 ok, 1 internal, 2 usage, 5 input/output (also: the data directory is in use)");
+  app.footer("Exit codes: 0 ok, 1 internal, 2 usage, 5 input/output (also when the data directory is in use)");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -123,13 +124,13 @@ Options read_options(int argc, char** argv) {
   config.quotas.disk_bytes = static_cast<std::uint64_t>(min_disk_mib * 1048576.0);
   config.memory_bytes = memory_mib < 0 ? 1 : static_cast<std::uint64_t>(memory_mib * 1048576.0);
   if (config.data.empty())
-    options.exit = wrong("--data DIR is needed");
+    options.exit = wrong("--data DIR is required");
   else if (const std::string why = split_listen(listen, config); !why.empty())
     options.exit = wrong("--listen " + why);
   else if (!is_loopback(config.address) && config.tokens.empty())
-    options.exit = wrong("--listen " + config.address + " can be reached by others: give --tokens FILE");
+    options.exit = wrong("--listen " + config.address + " is reachable from other hosts; it requires --tokens FILE");
   else if (std::error_code error; !fs::exists(config.program, error))
-    options.exit = wrong((error ? "cannot look at " : "there is no ") + config.program.string() +
+    options.exit = wrong((error ? "cannot examine " : "there is no ") + config.program.string() +
                          (error ? ": " + error.message() : "") + "; give --talus");
   if (!options.exit && place == "slurm") {
     try {

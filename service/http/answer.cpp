@@ -29,16 +29,17 @@ void identify(Exchange& exchange, const Tokens& tokens) {
 Answer routed(Exchange& exchange, const Router& router) {
   const Incoming& request = exchange.request;
   if (exchange.role == Role::none && !is_open(request.path))
-    throw Refusal(Reason::unauthorized, "this needs an Authorization: Bearer header with a token that is known here");
+    throw Refusal(Reason::unauthorized, "send an Authorization: Bearer header with a valid token");
   Router::Found found = router.find(request.method, request.path);
-  if (found.allow.empty()) throw Refusal(Reason::not_found, "there is nothing at this path");
+  if (found.allow.empty()) throw Refusal(Reason::not_found, "no resource exists at this path");
   if (request.method == "OPTIONS") return {.status = 204, .headers = {{"Allow", found.allow}}};
   if (!found.handler) {
-    Refusal refusal(Reason::method_not_allowed, request.method + " is not for this path");
+    Refusal refusal(Reason::method_not_allowed, request.method + " is not allowed on this path");
     refusal.allow = found.allow;
     throw refusal;
   }
-  if (found.role > exchange.role) throw Refusal(Reason::forbidden, "this token may only read");
+  if (found.role > exchange.role)
+    throw Refusal(Reason::forbidden, "this token has the role read; submitting needs a token with the role submit");
   exchange.captured = std::move(found.captured);
   return (*found.handler)(exchange);
 }

@@ -52,10 +52,10 @@ std::variant<WholeRequest, BadRequest, Closed> Connection::next() {
   std::optional<std::size_t> end;
   while (!(end = head_end(buffer_))) {
     if (buffer_.size() > limits_.head_bytes)
-      return BadRequest{431, "the head is longer than " + std::to_string(limits_.head_bytes) + " bytes"};
+      return BadRequest{431, "the request header is longer than " + std::to_string(limits_.head_bytes) + " bytes"};
     const Got got = receive(deadline);
     if (got == Got::end) return Closed{};
-    if (got == Got::nothing) return BadRequest{408, "the request did not come whole in time"};
+    if (got == Got::nothing) return BadRequest{408, "the request was not received completely in time"};
   }
   Head head = judge(std::string_view(buffer_).substr(0, *end), limits_);
   if (head.status != 0) return BadRequest{head.status, head.why};
@@ -64,7 +64,7 @@ std::variant<WholeRequest, BadRequest, Closed> Connection::next() {
   while (buffer_.size() < head.body) {
     const Got got = receive(deadline);
     if (got == Got::end) return Closed{};
-    if (got == Got::nothing) return BadRequest{408, "the request did not come whole in time"};
+    if (got == Got::nothing) return BadRequest{408, "the request was not received completely in time"};
   }
   WholeRequest request{.head = std::move(head), .body = buffer_.substr(0, head.body)};
   buffer_.erase(0, request.body.size());

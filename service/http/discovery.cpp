@@ -12,7 +12,7 @@ constexpr const char* openapi_type = "application/vnd.oai.openapi+json;version=3
 
 Json landing(const Exchange& exchange) {
   return {{"title", "Talus"},
-          {"description", "How far will a slope run if it fails, and how sure are we? Monte Carlo studies with SPH."},
+          {"description", "Run-out distance of a landslide and its uncertainty: Monte Carlo studies with SPH."},
           {"links",
            {link(exchange, "/", "self", "This document"),
             link(exchange, "/api", "service-desc", "The API as OpenAPI 3.0", openapi_type),
@@ -64,7 +64,7 @@ Json process(const Exchange& exchange) {
     description["links"] = links_of(exchange, name);
     return description;
   }
-  throw Refusal(Reason::no_such_process, "there is no process of this name");
+  throw Refusal(Reason::no_such_process, "there is no process with this ID; GET /processes lists them");
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ std::string box(const Json& v) {
                     (v["bbox"].size() == 4 || v["bbox"].size() == 6) &&
                     std::all_of(v["bbox"].begin(), v["bbox"].end(), [](const Json& x) { return x.is_number(); }) &&
                     (!v.contains("crs") || v["crs"].is_string());
-  return good ? "" : "must be {\"bbox\": [4 or 6 numbers]}, with a crs if wanted";
+  return good ? "" : "must be {\"bbox\": [4 or 6 numbers]}, optionally with a crs";
 }
 std::string object(const Json& v) { return v.is_object() ? "" : "must be an object"; }
 std::string one_of(const Json& v) {
@@ -67,7 +67,7 @@ Json read_echo_inputs(const Json& inputs) {
     if (const std::string wrong = test->second(given); !wrong.empty()) check.fault(pointer, wrong);
   }
   if (!inputs.contains("s")) check.fault("/inputs/s", "is missing");
-  check.finish(Reason::bad_request, "the inputs are not right");
+  check.finish(Reason::bad_request, "the inputs are invalid");
   return bare;
 }
 

@@ -21,7 +21,7 @@ class Place {
   explicit Place(Service& service) : service_(service) {
     if (++service_.streams <= service_.config.streams) return;
     --service_.streams;
-    Refusal full(Reason::unavailable, "too many clients wait for events; poll the job instead");
+    Refusal full(Reason::unavailable, "too many event streams are open; poll GET /jobs/ID instead");
     full.retry_after = 10;
     throw full;
   }
@@ -63,7 +63,7 @@ void stream(const Exchange& exchange, Service& service, std::int64_t seen, const
   for (bool first = true; Steady::now() < end && !service.stopping(); first = false) {
     const Job job = wait_for_change(exchange, service, seen, Steady::now() + quiet);
     const bool news = job.version > seen || (first && ended(job.state));
-    if (!sink(news ? event_text(job, exchange) : ": still here\n\n")) return;
+    if (!sink(news ? event_text(job, exchange) : ": keep-alive\n\n")) return;
     seen = std::max(seen, job.version);
     if (ended(job.state)) return;
     std::this_thread::sleep_for(pace);

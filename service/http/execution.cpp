@@ -33,11 +33,11 @@ struct Request {
 Request read_request(const Incoming& incoming, const std::vector<std::string>& known) {
   const std::string type = lower_trimmed(incoming.header("content-type"));
   if (!type.empty() && type.find("json") == std::string::npos)
-    throw Refusal(Reason::unsupported_media_type, "send application/json");
+    throw Refusal(Reason::unsupported_media_type, "send the body as Content-Type: application/json");
   const Json body = parse_json(incoming.body);
   Checker check;
   Request request;
-  if (!body.is_object()) throw Refusal(Reason::bad_request, "the body is not right", {{"", "must be an object"}});
+  if (!body.is_object()) throw Refusal(Reason::bad_request, "the request body is invalid", {{"", "must be an object"}});
   if (body.contains("inputs") && !body.at("inputs").is_object())
     check.fault("/inputs", "must be an object");
   else if (body.contains("inputs"))
@@ -45,8 +45,9 @@ Request read_request(const Incoming& incoming, const std::vector<std::string>& k
   request.outputs = read_outputs(body, known, check);
   if (body.contains("response") && body.at("response") != "raw" && body.at("response") != "document")
     check.fault("/response", "must be \"raw\" or \"document\"");
-  if (body.contains("subscriber")) check.fault("/subscriber", "nobody is called back here; poll the job or its events");
-  check.finish(Reason::bad_request, "the body is not right");
+  if (body.contains("subscriber"))
+    check.fault("/subscriber", "callbacks are not supported; poll the job or use its events");
+  check.finish(Reason::bad_request, "the request body is invalid");
   request.raw = body.contains("response") && body.at("response") == "raw";
   return request;
 }
@@ -57,7 +58,7 @@ Answer accepted(Exchange& exchange, Service& service,
   const std::optional<Job> job = submit(keeping(exchange, 201, true));
   if (!job) {  // the same key, at the same moment
     if (auto again = told_before(exchange, service)) return *again;
-    throw Refusal(Reason::conflict, "another request with this Idempotency-Key is being worked on");
+    throw Refusal(Reason::conflict, "another request with this Idempotency-Key is still in progress; retry later");
   }
   Answer answer = changed(exchange, *job, 201, true);
   if (prefers_async(exchange.request)) answer.headers.emplace_back("Preference-Applied", "respond-async");
@@ -75,7 +76,7 @@ void wait(double seconds, Service& service) {
   if (seconds <= 0.0) return;
   if (++service.streams > service.config.streams) {
     --service.streams;
-    throw Refusal(Reason::unavailable, "too many requests wait already; use Prefer: respond-async");
+    throw Refusal(Reason::unavailable, "too many synchronous requests are waiting; send Prefer: respond-async");
   }
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
   while (std::chrono::steady_clock::now() < end && !service.stopping())
@@ -102,7 +103,7 @@ void add_execution_routes(Router& router, Service& service) {
     const std::string& process = exchange.captured[0];
     if (process == "influence-zone") return study(exchange, service);
     if (process == "echo") return echo(exchange, service);
-    throw Refusal(Reason::no_such_process, "there is no process of this name");
+    throw Refusal(Reason::no_such_process, "there is no process with this ID; GET /processes lists them");
   });
 }
 

@@ -81,9 +81,9 @@ bool is_loopback_name(std::string_view host) {
 std::optional<Head> judge_host(std::string_view host, const GuardLimits& limits) {
   if (host.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:[]_") !=
       std::string_view::npos)
-    return refused(400, "Host is not a name");
+    return refused(400, "the Host header is not a valid host name");
   if (limits.loopback_names_only && !host.empty() && !is_loopback_name(host))
-    return refused(403, "without tokens talusd answers only to localhost, 127.0.0.1 and [::1]");
+    return refused(403, "without --tokens only requests to localhost, 127.0.0.1 and [::1] are accepted");
   return std::nullopt;
 }
 
@@ -102,7 +102,7 @@ std::optional<Head> split(std::string_view text, const GuardLimits& limits, std:
     if (colon == std::string_view::npos || !is_token(line.substr(0, colon)))
       return refused(400, "a header line is not \"name: value\"");
     const std::string_view value = trimmed(line.substr(colon + 1));
-    if (!is_value(value)) return refused(400, "a header value holds control characters");
+    if (!is_value(value)) return refused(400, "a header value contains control characters");
     lines.push_back({lower(line.substr(0, colon)), value});
     if (lines.size() > limits.headers) return refused(431, "more than " + std::to_string(limits.headers) + " headers");
   }
@@ -118,16 +118,16 @@ std::optional<std::size_t> head_end(std::string_view bytes) {
 
 Head judge(std::string_view head, const GuardLimits& limits) {
   if (head.size() > limits.head_bytes)
-    return refused(431, "the head is longer than " + std::to_string(limits.head_bytes) + " bytes");
-  if (head.find('\0') != std::string_view::npos) return refused(400, "the head holds a NUL");
+    return refused(431, "the request header is longer than " + std::to_string(limits.head_bytes) + " bytes");
+  if (head.find('\0') != std::string_view::npos) return refused(400, "the request header contains a NUL byte");
   const std::size_t first = head.find("\r\n");
   const std::string_view request = head.substr(0, first);
   const std::size_t a = request.find(' '), b = request.rfind(' ');
   if (a == std::string_view::npos || a == b) return refused(400, "the request line is not \"METHOD target HTTP/1.1\"");
   const std::string_view method = request.substr(0, a), target = request.substr(a + 1, b - a - 1),
                          protocol = request.substr(b + 1);
-  if (!is_token(method)) return refused(400, "the method is not a word");
-  if (protocol != "HTTP/1.1" && protocol != "HTTP/1.0") return refused(505, "only HTTP/1.1 and 1.0 are spoken here");
+  if (!is_token(method)) return refused(400, "the method is not a valid token");
+  if (protocol != "HTTP/1.1" && protocol != "HTTP/1.0") return refused(505, "only HTTP/1.1 and HTTP/1.0 are supported");
   if (target.size() > limits.target_bytes)
     return refused(414, "the URI is longer than " + std::to_string(limits.target_bytes) + " bytes");
   const std::optional<Target> wanted = read_target(method, target);
@@ -143,10 +143,10 @@ Head judge(std::string_view head, const GuardLimits& limits) {
     return std::count_if(lines.begin(), lines.end(), [&](const Line& line) { return line.name == name; });
   };
   if (count("transfer-encoding") > 0 && count("content-length") > 0)
-    return refused(400, "Content-Length and Transfer-Encoding exclude each other");
-  if (count("transfer-encoding") > 0) return refused(411, "chunked bodies are not taken; send a Content-Length");
-  if (count("content-length") > 1) return refused(400, "Content-Length stands more than once");
-  if (count("host") == 0 && good.keep_alive) return refused(400, "a Host is needed");
+    return refused(400, "send either Content-Length or Transfer-Encoding, not both");
+  if (count("transfer-encoding") > 0) return refused(411, "chunked bodies are not supported; send a Content-Length");
+  if (count("content-length") > 1) return refused(400, "Content-Length occurs more than once");
+  if (count("host") == 0 && good.keep_alive) return refused(400, "the Host header is missing");
 
   const auto named = std::find_if(lines.begin(), lines.end(), [](const Line& line) { return line.name == "host"; });
   std::string_view host = named == lines.end() ? "" : named->value;
@@ -171,15 +171,15 @@ Head judge(std::string_view head, const GuardLimits& limits) {
     } else if (line.name == "connection") {
       if (lower(line.value).find("close") != std::string::npos) good.keep_alive = false;
     } else if (line.name == "expect") {
-      if (lower(line.value) != "100-continue") return refused(417, "only 100-continue can be expected");
+      if (lower(line.value) != "100-continue") return refused(417, "the only supported Expect value is 100-continue");
       good.expects_continue = true;
     } else if (line.name == "content-type") {
-      if (hides_control(line.value)) return refused(400, "a header value hides control characters");
+      if (hides_control(line.value)) return refused(400, "a header value contains encoded control characters");
       good.rewritten += std::string(body_type_header) + ": " + std::string(line.value) + "\r\n";
     } else if (std::find(handed_on.begin(), handed_on.end(), line.name) != handed_on.end()) {
       if (count(line.name) > 1 && line.name != "accept" && line.name != "prefer" && line.name != "if-none-match")
-        return refused(400, line.name + " stands more than once");
-      if (hides_control(line.value)) return refused(400, "a header value hides control characters");
+        return refused(400, line.name + " occurs more than once");
+      if (hides_control(line.value)) return refused(400, "a header value contains encoded control characters");
       good.rewritten += line.name + ": " + std::string(line.value) + "\r\n";
     }
   }
@@ -187,7 +187,7 @@ Head judge(std::string_view head, const GuardLimits& limits) {
     const auto origin =
         std::find_if(lines.begin(), lines.end(), [](const Line& line) { return line.name == "origin"; });
     if (origin->value != "http://" + std::string(host))
-      return refused(403, "without tokens talusd takes nothing from pages of other sites");
+      return refused(403, "cross-origin requests are rejected unless talusd runs with --tokens");
   }
   good.rewritten += "Content-Length: " + std::to_string(good.body) + "\r\n\r\n";
   return good;

@@ -13,7 +13,7 @@ namespace {
 constexpr int default_limit = 100, max_limit = 1000;
 
 [[noreturn]] void bad(const std::string& name, const std::string& why) {
-  throw Refusal(Reason::bad_request, "a query parameter is not right", {{"?" + name, why}});
+  throw Refusal(Reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
 }
 
 /// Every value of a parameter that may stand more than once and hold a list.
@@ -37,7 +37,7 @@ void read_datetime(const std::string& text, JobFilter& filter) {
   const std::size_t slash = text.find('/');
   filter.created_from = end_of(text.substr(0, slash));
   filter.created_to = slash == std::string::npos ? filter.created_from : end_of(text.substr(slash + 1));
-  if (!filter.created_from && !filter.created_to) bad("datetime", "is open at both ends");
+  if (!filter.created_from && !filter.created_to) bad("datetime", "an interval needs at least one end");
 }
 
 JobFilter filter_of(const Exchange& exchange) {
@@ -83,7 +83,7 @@ Answer results(Exchange& exchange, Service& service) {
   const Job job = job_of(exchange, service);
   if (job.state == JobState::dismissed) throw Refusal(Reason::job_dismissed, "the job was dismissed");
   if (job.state == JobState::failed) throw Refusal(Reason::unprocessable, "the job failed: " + job.message);
-  if (job.state != JobState::successful) throw Refusal(Reason::result_not_ready, "the job has not ended yet");
+  if (job.state != JobState::successful) throw Refusal(Reason::result_not_ready, "the job is still running");
   const Json asked = Json::parse(job.inputs);
   const auto outputs = asked.at("outputs").get<std::vector<std::string>>();
   const bool raw = asked.value("raw", false);

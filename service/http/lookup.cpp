@@ -36,7 +36,7 @@ std::string percent_encoded(const std::string& text) {
 }
 
 [[noreturn]] void bad_parameter(const std::string& name, const std::string& why) {
-  throw Refusal(Reason::bad_request, "a query parameter is not right", {{"?" + name, why}});
+  throw Refusal(Reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
 }
 
 std::string key_of(const Exchange& exchange) {
@@ -54,15 +54,15 @@ std::string fingerprint(const Incoming& request) {
 
 Job job_of(const Exchange& exchange, Service& service) {
   std::optional<Job> job = service.store.job(exchange.captured.at(0));
-  if (!job || job->subject != exchange.subject) throw Refusal(Reason::no_such_job, "there is no job of this name");
+  if (!job || job->subject != exchange.subject) throw Refusal(Reason::no_such_job, "there is no job with this ID");
   return *job;
 }
 
 Job study_of(const Exchange& exchange, Service& service) {
   Job job = job_of(exchange, service);
-  if (job.process != "influence-zone") throw Refusal(Reason::not_found, "a job of this process has no realizations");
+  if (job.process != "influence-zone") throw Refusal(Reason::not_found, "jobs of this process have no realizations");
   if (job.state == JobState::dismissed)
-    throw Refusal(Reason::job_dismissed, "the job was dismissed; its files are gone");
+    throw Refusal(Reason::job_dismissed, "the job was dismissed and its files were removed");
   return job;
 }
 
@@ -86,7 +86,8 @@ std::optional<double> real_number(const Incoming& request, const std::string& na
 
 void only_parameters(const Incoming& request, std::initializer_list<const char*> known) {
   for (const auto& [name, value] : request.query)
-    if (std::find(known.begin(), known.end(), name) == known.end()) bad_parameter(name, "is not a parameter here");
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      bad_parameter(name, "is not a parameter of this request");
 }
 
 std::string query_text(const Incoming& request, const std::optional<std::pair<std::string, std::string>>& set) {
@@ -116,7 +117,7 @@ std::optional<Answer> told_before(const Exchange& exchange, Service& service) {
   const auto kept = service.store.remembered(exchange.subject, key);
   if (!kept) return std::nullopt;
   if (kept->body_hash != fingerprint(exchange.request))
-    throw Refusal(Reason::unprocessable, "this Idempotency-Key was used for another request");
+    throw Refusal(Reason::unprocessable, "this Idempotency-Key was already used for a different request");
   Answer answer{.status = kept->status, .body = kept->body};
   if (!kept->location.empty()) answer.headers.emplace_back("Location", kept->location);
   return answer;

@@ -21,7 +21,7 @@ struct Row {
 
 constexpr Row table[] = {
     {Reason::bad_request, 400, "urn:talus:problem:bad-request", "Bad request"},
-    {Reason::unauthorized, 401, "urn:talus:problem:unauthorized", "A token is needed"},
+    {Reason::unauthorized, 401, "urn:talus:problem:unauthorized", "A token is required"},
     {Reason::forbidden, 403, "urn:talus:problem:forbidden", "Not allowed"},
     {Reason::not_found, 404, "urn:talus:problem:not-found", "Not found"},
     {Reason::no_such_process, 404, OGC_EXCEPTION "no-such-process", "No such process"},
@@ -29,21 +29,21 @@ constexpr Row table[] = {
     {Reason::result_not_ready, 404, OGC_EXCEPTION "result-not-ready", "The result is not ready"},
     {Reason::job_dismissed, 410, "urn:talus:problem:job-dismissed", "The job was dismissed"},
     {Reason::method_not_allowed, 405, "urn:talus:problem:method-not-allowed", "Method not allowed"},
-    {Reason::not_acceptable, 406, "urn:talus:problem:not-acceptable", "Not to be had in that form"},
-    {Reason::conflict, 409, "urn:talus:problem:conflict", "Not in this state"},
-    {Reason::length_required, 411, "urn:talus:problem:length-required", "A Content-Length is needed"},
+    {Reason::not_acceptable, 406, "urn:talus:problem:not-acceptable", "No acceptable representation"},
+    {Reason::conflict, 409, "urn:talus:problem:conflict", "Conflict with the current state"},
+    {Reason::length_required, 411, "urn:talus:problem:length-required", "Content-Length is required"},
     {Reason::too_large, 413, "urn:talus:problem:too-large", "Too large"},
     {Reason::uri_too_long, 414, "urn:talus:problem:uri-too-long", "The URI is too long"},
     {Reason::unsupported_media_type, 415, "urn:talus:problem:unsupported-media-type", "Unsupported media type"},
-    {Reason::unprocessable, 422, "urn:talus:problem:unprocessable", "Cannot be done"},
-    {Reason::quota, 422, "urn:talus:problem:quota-exceeded", "Over the quota"},
+    {Reason::unprocessable, 422, "urn:talus:problem:unprocessable", "Unprocessable request"},
+    {Reason::quota, 422, "urn:talus:problem:quota-exceeded", "Quota exceeded"},
     {Reason::queue_full, 429, "urn:talus:problem:queue-full", "The queue is full"},
     {Reason::headers_too_large, 431, "urn:talus:problem:headers-too-large", "The headers are too large"},
     {Reason::internal, 500, "urn:talus:problem:internal", "Internal error"},
     {Reason::not_implemented, 501, "urn:talus:problem:not-implemented", "Not implemented"},
-    {Reason::unavailable, 503, "urn:talus:problem:unavailable", "Not available now"},
-    {Reason::timeout, 504, "urn:talus:problem:timeout", "Took too long"},
-    {Reason::disk_full, 507, "urn:talus:problem:disk-full", "No room on the disk"},
+    {Reason::unavailable, 503, "urn:talus:problem:unavailable", "Temporarily unavailable"},
+    {Reason::timeout, 504, "urn:talus:problem:timeout", "Time limit exceeded"},
+    {Reason::disk_full, 507, "urn:talus:problem:disk-full", "Insufficient storage"},
 };
 
 const Row& row_of(Reason reason) {
@@ -78,7 +78,7 @@ Answer file_problem(int error, const char* what, const std::string& accept) {
   log_error("files", {{"why", what}});
   const bool full = error == ENOSPC || error == EDQUOT;
   return problem(Refusal(full ? Reason::disk_full : Reason::unavailable,
-                         full ? "there is no room on the disk" : "a file of the service cannot be read or written"),
+                         full ? "the disk is full" : "the service cannot read or write one of its files"),
                  accept);
 }
 
@@ -103,7 +103,7 @@ Answer problem(std::exception_ptr thrown, const std::string& accept) {
     return file_problem(e.code().value(), e.what(), accept);
   } catch (const std::exception& e) {
     log_error("internal", {{"why", e.what()}});
-    return problem(Refusal(Reason::internal, "something went wrong here; it has been logged"), accept);
+    return problem(Refusal(Reason::internal, "internal error; details are in the log of talusd"), accept);
   }
 }
 

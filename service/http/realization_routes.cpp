@@ -14,7 +14,7 @@ constexpr int max_bins = 1000, max_edges = 1001, default_limit = 100, max_limit 
 constexpr std::int64_t most_realizations = 1'000'000'000;
 
 [[noreturn]] void bad(const std::string& name, const std::string& why) {
-  throw Refusal(Reason::bad_request, "a query parameter is not right", {{"?" + name, why}});
+  throw Refusal(Reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
 }
 
 std::vector<double> edges_of(const Incoming& request) {
@@ -58,7 +58,7 @@ Answer histogram(Exchange& exchange, Service& service) {
   const int quantity = quantity_index(name, "?quantity");
   const auto bins = whole_number(request, "bins", 1, max_bins);
   const std::vector<double> edges = edges_of(request);
-  if (bins && !edges.empty()) bad("bins", "goes without edges");
+  if (bins && !edges.empty()) bad("bins", "cannot be combined with edges");
   Json answer =
       service.jobs.distribution(job, quantity, bins ? std::optional(static_cast<int>(*bins)) : std::nullopt, edges);
   answer["partial"] = !ended(job.state);
@@ -144,8 +144,8 @@ Answer one(Exchange& exchange, Service& service) {
   }
   const std::string path = "/jobs/" + job.id + "/realizations/" + std::to_string(run.key.index);
   json["links"] = {link(exchange, path, "self", "This realization"),
-                   link(exchange, path + "/field", "related", "Friction angles before the slide"),
-                   link(exchange, path + "/profile", "related", "The slide at its end")};
+                   link(exchange, path + "/field", "related", "Friction angles before failure"),
+                   link(exchange, path + "/profile", "related", "Profile at the end of the run")};
   return json_answer(json);
 }
 
@@ -173,7 +173,7 @@ Answer profile(Exchange& exchange, Service& service) {
   const Job job = study_of(exchange, service);
   const Run run = run_of(exchange, service, job);
   const bool svg = wants_svg(exchange.request);
-  if (run.state != RunState::done) throw Refusal(Reason::result_not_ready, "this realization is not done");
+  if (run.state != RunState::done) throw Refusal(Reason::result_not_ready, "this realization has no result yet");
   return picture(service.jobs.profile(job, run.key.index, svg), svg);
 }
 
@@ -191,8 +191,8 @@ Answer extend(Exchange& exchange, Service& service) {
   const bool good = body.is_object() && body.contains("realizations") && body.at("realizations").is_number_integer() &&
                     body.at("realizations") >= 1 && body.at("realizations") <= most_realizations;
   if (!good || body.size() != 1)
-    throw Refusal(Reason::bad_request, "the body is not right",
-                  {{"/realizations", "must be how many to add, at least 1, and the only member"}});
+    throw Refusal(Reason::bad_request, "the request body is invalid",
+                  {{"/realizations", "must be the number of realizations to add, at least 1, and the only member"}});
   if (!service.jobs.extend(job, body.at("realizations").get<std::int64_t>(), keeping(exchange, 200, false)))
     if (auto again = told_before(exchange, service)) return *again;
   return changed(exchange, study_of(exchange, service), 200, false);  // dismissed meanwhile: 410

@@ -22,11 +22,11 @@ std::string message(const Job& job) {
 Json links(const Job& job, const Exchange& exchange) {
   const std::string path = "/jobs/" + job.id;
   Json all = Json::array({link(exchange, path, "self", "This job")});  // a bare {link} is an object for some compilers
-  if (!ended(job.state)) all.push_back(link(exchange, path, "monitor", "How it is getting on"));
+  if (!ended(job.state)) all.push_back(link(exchange, path, "monitor", "Progress events"));
   if (job.state == JobState::successful)
     all.push_back(link(exchange, path + "/results", "http://www.opengis.net/def/rel/ogc/1.0/results", "Results"));
   if (job.planned == 0 || job.state == JobState::dismissed) return all;
-  all.push_back(link(exchange, path + "/histogram", "related", "Histogram of what is done so far"));
+  all.push_back(link(exchange, path + "/histogram", "related", "Histogram of the realizations done so far"));
   all.push_back(link(exchange, path + "/realizations", "related", "Realizations"));
   all.push_back(link(exchange, path + "/events", "related", "Events", event_stream));
   return all;

@@ -27,7 +27,7 @@ std::optional<Role> role_of(const std::string& word) {
 
 Tokens::Tokens(const std::filesystem::path& file) : wanted_(true) {
   const auto text = read_file(file, 1 << 20);
-  if (!text) throw std::runtime_error("there is no tokens file " + file.string());
+  if (!text) throw std::runtime_error("cannot open the tokens file " + file.string());
   std::istringstream lines(*text);
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
@@ -39,10 +39,10 @@ Tokens::Tokens(const std::filesystem::path& file) : wanted_(true) {
     const bool hex = hash.size() == 64 && hash.find_first_not_of("0123456789abcdef") == std::string::npos;
     if (!role_of(role) || !is_subject(subject) || !hex || !rest.empty())
       throw std::runtime_error(file.string() + ":" + std::to_string(number) +
-                               ": not \"submit|read SUBJECT SHA256\"; talusd --new-token makes such lines");
+                               ": not \"submit|read SUBJECT SHA256\"; talusd --new-token prints such a line");
     entries_.push_back({{subject, *role_of(role)}, hash});
   }
-  if (entries_.empty()) throw std::runtime_error(file.string() + " holds no token");
+  if (entries_.empty()) throw std::runtime_error(file.string() + " contains no token");
 }
 
 std::optional<Bearer> Tokens::find(const std::string& authorization) const {
@@ -59,7 +59,7 @@ std::optional<Bearer> Tokens::find(const std::string& authorization) const {
 
 std::pair<std::string, std::string> new_token(const std::string& role, const std::string& subject) {
   if (!role_of(role) || !is_subject(subject))
-    throw std::runtime_error("--new-token takes submit or read, and a subject of letters, digits and . _ @ -");
+    throw std::runtime_error("--new-token needs a role (submit or read) and a subject of letters, digits and . _ @ -");
   const std::string token = random_hex(32);
   return {token, role + " " + subject + " " + sha256(token)};
 }

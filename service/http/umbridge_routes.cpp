@@ -62,13 +62,13 @@ std::vector<const Parameter*> wanted(const Json& body) {
   const Json& config = body.at("config");
   if (!config.is_object()) invalid("config must be an object");
   for (const auto& [key, value] : config.items())
-    if (key != "parameters") invalid("config." + key + " is not known here; only parameters is");
+    if (key != "parameters") invalid("config." + key + " is not a known key; the only one is parameters");
   if (!config.contains("parameters")) return all;
   if (!config.at("parameters").is_array()) invalid("config.parameters must be an array of names");
   for (const Json& name : config.at("parameters")) {
     const auto at =
         std::find_if(std::begin(parameters), std::end(parameters), [&](const Parameter& p) { return name == p.name; });
-    if (at == std::end(parameters)) invalid("config.parameters: " + dump(name) + " is not a parameter here");
+    if (at == std::end(parameters)) invalid("config.parameters: " + dump(name) + " is not a known parameter");
     if (std::find(all.begin(), all.end(), at) != all.end())
       invalid(std::string("config.parameters names ") + at->name + " twice");
     all.push_back(at);
@@ -115,7 +115,7 @@ Json evaluate(const Json& body, Json document, Service& service, Terms& terms) {
     if (!input[i].is_array() || input[i].size() != expected[i])
       invalid("input vector " + std::to_string(i) + " must have " + std::to_string(expected[i]) + " numbers");
     for (const Json& value : input[i])
-      if (!value.is_number()) invalid("input vector " + std::to_string(i) + " holds what is no number");
+      if (!value.is_number()) invalid("input vector " + std::to_string(i) + " contains something that is not a number");
   }
   if (expected[0] > 0) document["random_field"]["xi"] = input[0];
   const std::vector<const Parameter*> names = wanted(body);

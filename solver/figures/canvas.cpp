@@ -95,7 +95,7 @@ double nice_step(double range, int parts) {
 
 void save(const Script& script, const Canvas& canvas, const std::filesystem::path& path) {
   const bool svg = path.extension() == ".svg";
-  if (!svg && path.extension() != ".png") throw IoError(path.string() + ": a figure ends in .svg or .png");
+  if (!svg && path.extension() != ".png") throw IoError(path.string() + ": a figure file must end in .svg or .png");
   std::string picture = run_gnuplot(terminal(canvas, svg) + script.text()).picture;
   if (svg) spell_bold_as_weight(picture);
   write_file_atomically(path, picture);

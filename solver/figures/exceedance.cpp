@@ -25,8 +25,9 @@ void mark(Script& script, const StudyFiles& study, double quantile, const char* 
 
 Sheet exceedance_sheet(const StudyFiles& study) {
   const Quantity& q = study.quantities.at("influence_zone_m");
-  const std::string subtitle = std::string("Probability that the slide runs farther than x. Band: 95 % (Wilson)") +
-                               (study.failed > 0 ? ", from no failed run exceeding x to all of them" : "");
+  const std::string subtitle =
+      std::string("Probability that the run-out exceeds x, given failure. Band: 95 % (Wilson)") +
+      (study.failed > 0 ? ", widened to allow for failed runs (none to all of them exceed x)" : "");
   Sheet sheet{begin(canvas, chart_stamps(study, subtitle)), canvas};
   Script& script = sheet.script;
   std::vector<std::array<double, 4>> rows;

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using namespace figures;
 
 constexpr std::size_t panels = 6;  // of a sequence, at most
-constexpr const char* speed_words = "Speed of the soil; front: farthest particle from the left boundary";
+constexpr const char* speed_words = "Speed of the soil. Front: farthest particle, measured from the left boundary";
 
 // Draws into DIR/figures and remembers what.
 class Album {
@@ -60,7 +60,7 @@ std::vector<std::size_t> spread_out(std::size_t n) {
 std::vector<Frame> some_frames(const fs::path& file) {
   std::vector<Frame> frames;
   for (const std::size_t k : spread_out(snapshot_times(file).size())) frames.push_back(read_frame(file, k));
-  if (frames.empty()) throw IoError(file.string() + " holds no snapshot");
+  if (frames.empty()) throw IoError(file.string() + " contains no snapshot");
   return frames;
 }
 
@@ -74,7 +74,7 @@ void draw_motion(Album& album, const fs::path& file, const std::string& suffix, 
   album.add("speed" + suffix, speed, model, stamps);
   std::vector<Snapshot> strength{{&frames.front(), Colour::friction_angle, {}}};
   if (frames.size() > 1) strength.push_back({&frames.back(), Colour::friction_angle, {}});
-  stamps.subtitle = whose + "Friction angle of the soil, which it carries along";
+  stamps.subtitle = whose + "Friction angle (carried by the particles)";
   album.add("friction_angle" + suffix, strength, model, stamps);
 }
 
@@ -126,7 +126,7 @@ void draw_snapshots(Album& album, const fs::path& file, const Model& model, Stam
 
 std::vector<fs::path> plot_study(const fs::path& directory) {
   const StudyFiles study = read_study(directory);
-  if (study.done == 0) throw IoError(directory.string() + ": no realization has come to its end, nothing to draw");
+  if (study.done == 0) throw IoError(directory.string() + ": no realization is done yet, so there is nothing to draw");
   Album album(directory);
   album.add("histogram", histogram_sheet(study));
   album.add("exceedance", exceedance_sheet(study));
@@ -139,7 +139,7 @@ std::vector<fs::path> plot_study(const fs::path& directory) {
   for (const std::string which : {"first", "worst"}) {
     const fs::path file = directory / "profiles" / (which + ".vtkhdf");
     if (!fs::exists(file)) continue;
-    const std::string name = which == "first" ? "First run. " : "The run that went farthest. ";
+    const std::string name = which == "first" ? "First realization. " : "Realization with the longest run-out. ";
     draw_motion(album, file, "_" + which, model, {study.title, name, study.source});
   }
   return album.drawn();

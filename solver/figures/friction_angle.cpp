@@ -35,7 +35,7 @@ Sheet friction_angle_sheet(const StudyFiles& study) {
   }
   const std::optional<double> r = correlation(phi, zone);
   const std::string words =
-      r ? "Correlation " + fixed(*r, 2) + "; dashed: least squares" : std::string("One point a run");
+      r ? "Correlation " + fixed(*r, 2) + "; dashed: least squares" : std::string("One point per run");
   Sheet sheet{begin(canvas, chart_stamps(study, words)), canvas};
   Script& script = sheet.script;
   const Vec2 x = range_of(phi);
@@ -46,7 +46,7 @@ Sheet friction_angle_sheet(const StudyFiles& study) {
   script("set xtics ", nice_step(x.y - x.x, 8));
   script("set ytics ", nice_step(y.y - y.x, 8));
   script("set xlabel 'mean friction angle of the slide (°)'");
-  script("set ylabel 'influence zone (m)'");
+  script("set ylabel 'run-out distance (m)'");
   place(script, canvas, panel);
   std::string line;
   if (r) {

@@ -83,11 +83,12 @@ int spawn_gnuplot(int in, int out, int err) {
   char* arguments[] = {program, no_start_up_file, nullptr};
   pid_t child = 0;
   const int error = ::posix_spawnp(&child, program, actions.get(), nullptr, arguments, environment_of_gnuplot().data());
-  if (error == ENOENT || error == EACCES) throw IoError("gnuplot not found, no figures drawn: install gnuplot-nox");
+  if (error == ENOENT || error == EACCES)
+    throw IoError("gnuplot not found, so no figures were drawn; install gnuplot-nox");
   if (error != 0) fail("cannot start gnuplot", error);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) fail("lost sight of gnuplot", errno);
+    if (errno != EINTR) fail("cannot wait for gnuplot", errno);
   }
   return status;
 }

@@ -23,9 +23,9 @@ std::vector<Bar> strip_bars(const Quantity& q) {
   std::vector<Bar> all;
   if (q.mean_ci95 && q.mean_ci95->lo && q.mean_ci95->hi)
     all.push_back({"mean, 95 % interval", *q.mean_ci95->lo, *q.mean_ci95->hi, 3, vermillion});
-  if (q.mean && q.stdev) all.push_back({"mean ± spread", *q.mean - *q.stdev, *q.mean + *q.stdev, 2, blue});
+  if (q.mean && q.stdev) all.push_back({"± standard deviation", *q.mean - *q.stdev, *q.mean + *q.stdev, 2, blue});
   if (q.mean && q.noise_floor_stdev) {
-    all.push_back({"mean ± noise floor", *q.mean - *q.noise_floor_stdev, *q.mean + *q.noise_floor_stdev, 1, faint});
+    all.push_back({"± numerical noise", *q.mean - *q.noise_floor_stdev, *q.mean + *q.noise_floor_stdev, 1, faint});
   }
   return all;
 }
@@ -59,7 +59,7 @@ void draw_strip(Script& script, const std::vector<Bar>& all) {
   script("unset ylabel");
   script("set border 1");
   script("set format x '%g'");
-  script("set xlabel 'influence zone (m): farthest particle from the left boundary'");
+  script("set xlabel 'run-out distance (m): farthest particle, from the left boundary'");
   std::string plot;
   for (const Bar& bar : all) {
     const std::string name = "strip" + number(bar.row);
@@ -95,8 +95,8 @@ Vec2 x_range(const Quantity& q, const std::vector<Bar>& all) {
 Sheet histogram_sheet(const StudyFiles& study) {
   const Quantity& q = study.quantities.at("influence_zone_m");
   std::string subtitle = "Mean " + interval_text(q.mean, q.mean_ci95) + ", standard deviation " +
-                         interval_text(q.stdev, q.stdev_ci95) + ", noise floor " +
-                         (q.noise_floor_stdev ? fixed(*q.noise_floor_stdev, 3) + " m" : "not measured");
+                         interval_text(q.stdev, q.stdev_ci95) + ", numerical noise " +
+                         (q.noise_floor_stdev ? fixed(1000 * *q.noise_floor_stdev, 2) + " mm" : "not measured");
   Sheet sheet{begin(canvas, chart_stamps(study, std::move(subtitle))), canvas};
   Script& script = sheet.script;
   const std::vector<Bar> all = strip_bars(q);

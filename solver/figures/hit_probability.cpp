@@ -74,10 +74,12 @@ Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std
   const double metre = std::min((right - left) / box.width(), tallest / box.height());
   const double terrain_bottom = curve_bottom + gap + metre * box.height();
   const Canvas canvas{std::round(left + metre * box.width() + 28), std::round(terrain_bottom + beneath)};
-  Sheet sheet{begin(canvas, chart_stamps(study,
-                                         "Probability that the front reaches x (band: 95 %, Wilson), above the terrain "
-                                         "and the slide before its release")),
-              canvas};
+  Sheet sheet{
+      begin(canvas,
+            chart_stamps(study,
+                         "Probability that the front reaches x, given failure (band: 95 %, Wilson); below: terrain "
+                         "and slide before failure")),
+      canvas};
   Script& script = sheet.script;
   const double edge = left + metre * box.width();
   script("set xrange [", box.lo.x, ":", box.hi.x, "]");

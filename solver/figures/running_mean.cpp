@@ -52,7 +52,7 @@ Vec2 y_range(const std::vector<std::array<double, 4>>& rows) {
 Sheet running_mean_sheet(const StudyFiles& study) {
   const Quantity& q = study.quantities.at("influence_zone_m");
   Sheet sheet{
-      begin(canvas, chart_stamps(study, "Mean influence zone of the first n runs: " +
+      begin(canvas, chart_stamps(study, "Mean run-out distance of the first n runs: " +
                                             interval_text(q.mean, q.mean_ci95) + ". Band: 95 % interval (Student)")),
       canvas};
   Script& script = sheet.script;
@@ -66,7 +66,7 @@ Sheet running_mean_sheet(const StudyFiles& study) {
   script("set xtics ", std::max(1.0, nice_step(rows.back()[0], 8)));
   script("set ytics ", nice_step(y.y - y.x, 8));
   script("set xlabel 'realizations n'");
-  script("set ylabel 'mean influence zone (m)'");
+  script("set ylabel 'mean run-out distance (m)'");
   place(script, canvas, panel);
   script("plot $means using 1:3:4 with filledcurves fillcolor rgb '", blue,
          "' fillstyle transparent solid 0.22 noborder, \\");

@@ -32,10 +32,12 @@ void legend(Script& script, double x, const char* colour, const char* name) {
 }  // namespace
 
 Sheet spread_sheet(const StudyFiles& study) {
-  Sheet sheet{begin(canvas, chart_stamps(study, "How much of the spread is soil, and how much is numerics")), canvas};
+  Sheet sheet{
+      begin(canvas, chart_stamps(study, "Standard deviation from soil variability, compared with the numerical noise")),
+      canvas};
   Script& script = sheet.script;
   legend(script, panel.left, blue, "standard deviation, 95 % interval");
-  legend(script, panel.left + 260, vermillion, "numerical noise floor");
+  legend(script, panel.left + 260, vermillion, "numerical noise");
   std::vector<Row> spread;
   std::vector<Row> floor;
   double widest = 0.0;

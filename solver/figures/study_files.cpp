@@ -71,7 +71,7 @@ StudyFiles read_summary(const json& study) {
   files.done = realizations.at("done");
   files.failed = realizations.at("failed");
   for (const auto& [key, node] : study.at("quantities").items()) files.quantities[key] = read_quantity(node);
-  if (!files.quantities.contains("influence_zone_m")) throw IoError("has no quantities.influence_zone_m");
+  if (!files.quantities.contains("influence_zone_m")) throw IoError("quantities.influence_zone_m is missing");
   return files;
 }
 
@@ -141,7 +141,7 @@ StudyFiles read_study(const fs::path& directory) {
   try {
     files = read_summary(read_json(summary));
   } catch (const json::exception& e) {
-    throw IoError(summary.string() + " is not the summary of a study: " + e.what());
+    throw IoError(summary.string() + " is not a valid study summary: " + e.what());
   }
   for (const auto& row : read_table(table)) {
     if (const auto status = row.find("status"); status == row.end() || status->second != "done") continue;

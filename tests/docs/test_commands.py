@@ -5,6 +5,7 @@ usage: test_commands.py TALUSD SOURCE_DIR
 A block marked `sh elsewhere` installs, needs root, or takes hours: each of its lines is run by what ELSEWHERE says.
 Of `talus ...` and `--option` in running text, verbs and options must exist.
 """
+import itertools
 import json
 import pathlib
 import re
@@ -21,6 +22,11 @@ BIN = TALUSD.parent
 # What makes them quick, and keeps them off a port that may be taken. Each must occur.
 IN_TEST = {
     "--realizations 1000": "--realizations 12",
+    "--realizations 200": "--realizations 2 --set particle_spacing_m=0.8 --set time.end_s=0.5",
+    "particle_spacing_m=0.2": "particle_spacing_m=0.8",
+    "$(seq 9)": "3 6",
+    "table4-case$k.json": "table4-case$k.json --realizations 2 --set particle_spacing_m=1 --set time.end_s=0.1 --set time.snapshot_times_s=[]",
+    "/usr/share/talus/cases": str(SOURCE / "solver/cases"),
     '\\"realizations\\": 1000': '\\"realizations\\": 12',
     "--range 0 499": "--range 0 5",
     "--range 500 999": "--range 6 11",
@@ -96,7 +102,39 @@ class Commands(unittest.TestCase):
     def test_blocks_are_of_a_known_kind(self):
         kinds = {(page.relative_to(SOURCE).as_posix(), kind) for page in pages() for kind, _ in blocks(page)}
         self.assertEqual(kinds, {("README.md", "sh elsewhere"), ("README.md", "sh"), ("README.md", "json"),
+                                 ("tests/validation/PAPER.md", "sh"),
                                  ("service/README.md", "sh elsewhere"), ("service/README.md", "sh"), ("deploy/slurm/README.md", "sh elsewhere")})
+
+    def test_links_lead_somewhere(self):
+        seen = 0
+        for page in pages():
+            for target, anchor in re.findall(r"\]\((?!https?:)([^)#\s]*)(?:#([^)]*))?\)", page.read_text()):
+                there = (page.parent / target).resolve() if target else page
+                self.assertTrue(there.exists(), f"{page.relative_to(SOURCE)}: {target}")
+                if anchor:
+                    headings = re.findall(r"^#+ (.*)$", there.read_text(), re.M)
+                    known = {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
+                    self.assertIn(anchor, known, f"{page.relative_to(SOURCE)}: {target}#{anchor}")
+                seen += 1
+        self.assertGreater(seen, 40)
+
+    def test_the_case_of_the_readme_is_the_shipped_one(self):
+        (shown,) = shell_blocks(SOURCE / "README.md", "json")
+        shipped = json.loads((SOURCE / "solver/cases/road-slope.json").read_text())
+        shipped.pop("description")
+        self.assertEqual(json.loads(shown), shipped)
+
+    def test_the_paper_page_shows_the_committed_results(self):
+        results = json.loads((SOURCE / "tests/validation/results/paper_study.json").read_text())
+        rows = re.findall(r"^\| (\d) \|(.*)\|$", (SOURCE / "tests/validation/PAPER.md").read_text(), re.M)
+        self.assertEqual([int(case) for case, _ in rows], list(range(1, 10)))
+        for case, row in rows:
+            cells = [cell.strip() for cell in row.split("|")][3:]
+            for cell, (group, truncation) in zip(cells, itertools.product(("studies", "fine"), ("sorted", "share")), strict=True):
+                found = [s["influence_zone_m"] for s in results[group]
+                         if s["case"] == int(case) and s["truncation"] == truncation]
+                wanted = f"{found[0]['mean']:.2f}, {found[0]['stdev']:.2f}" if found else "-"
+                self.assertEqual(cell, wanted, f"case {case}, {group}, {truncation}")
 
     def test_what_is_run_elsewhere(self):
         lines = {line for page in pages() for text in shell_blocks(page, "sh elsewhere") for line in commands(text)}

@@ -191,7 +191,7 @@ class Ours(ServiceTest):
         head, _, body = self.daemon.raw(f"GET /jobs/{job}/events HTTP/1.0\r\n\r\n".encode(), 60).partition(b"\r\n\r\n")
         self.assertNotIn(b"chunked", head.lower())
         self.assertRegex(head, rb"(?i)Connection: close")
-        self.assertRegex(body, rb"\A(id: |: still here)")
+        self.assertRegex(body, rb"\A(id: |: keep-alive)")
         self.assertRegex(body, rb'"status":"successful".*\n\n\Z')
 
     def test_long_poll_ends_with_the_change(self):

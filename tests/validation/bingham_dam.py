@@ -15,12 +15,15 @@ SOURCE = ("slow, thin: lubrication theory, q = rho g S Y^2 (3 h - Y)/(6 eta), Y 
           "(1989) 505-529; Matson & Hogg, J. Non-Newtonian Fluid Mech. 142 (2007) 79-94), integrated here. Tailings: gypsum, East Texas 1966, 11 m deep, 1400 kg/m3, tau_y = 1 kPa, eta = 50 Pa s; "
           "seen: about 300 m in 60 to 120 s (Jeyapalan, Duncan & Seed, J. Geotech. Eng. 109 (1983) 172-189)")
 NOT_MET = {"run-out of the tailings over the field's, less 1": 0.45}
-REMARKS = ("The front of the slow block is where the surface through its particles is 0.2 m high, which is known to one spacing on either side; its farthest particles are further out than theory's thin tip, "
-           "which the last two rows cannot follow. "
-           "The field's figures are as later studies cite them; the original was not at hand. Of the tailings, the plane model is compared as it is: the real flow could spread to the sides, and the shape of the pond "
-           "is not known here. It falls short of the field, and has not converged in the spacing. With these parameters even a soil that stops everywhere at yield gets no further than 277 m: the field's 300 m "
-           "need inertia, or weaker soil. (A three-dimensional Bingham model of the Navier-Stokes equations found 73 % of the observed distance, Appl. Sci. 10 (2020) 6501; that ours is near it says "
-           "nothing.) What sets the pace at the end is how a Bingham fluid comes to rest, like 1/t.")
+REMARKS = ("The front of the slow block is the point where the surface through its particles is 0.2 m high, which is "
+           "known to within one spacing; its farthest particles are ahead of the thin tip of the theory, which the "
+           "last two rows cannot represent. The field data are quoted from later studies; the original was not "
+           "available. The tailings are compared with the plane model as it is: the real flow could spread sideways, "
+           "and the shape of the pond is not known here. The run-out is shorter than in the field and has not "
+           "converged in the spacing. With these parameters even a soil that stops everywhere at yield reaches only "
+           "277 m: the 300 m of the field need inertia or weaker soil. (A three-dimensional Navier-Stokes model with "
+           "a Bingham fluid found 73 % of the observed distance, Appl. Sci. 10 (2020) 6501; that our value is close "
+           "to it is no evidence.) The rate at the end follows from how a Bingham fluid comes to rest, like 1/t.")
 HALF_WIDTH, YIELD, VISCOSITY = 4.0, 0.02, 5000.0  # of the slow block: [m], tau_y/(rho g H), [Pa s]
 TIMES = [2, 5, 10, 15, 20, 30, 40]  # [s]
 SHALLOW_FROM = 5  # by then the block has become a shallow heap [s]
@@ -101,18 +104,18 @@ def measure(work, coarse):
 def error(level, times, measure="front_m"):
     """Rms difference of the front from lubrication theory, both from the same shape, over the way that theory makes it go from there."""
     late = [front for t, front in zip(times, level[measure]) if t > SHALLOW_FROM]
-    wanted = np.array(level["lubrication_from_there_m"])
-    return float(np.sqrt(np.mean((np.array(late) - wanted) ** 2)) / way(level, times))
+    expected = np.array(level["lubrication_from_there_m"])
+    return float(np.sqrt(np.mean((np.array(late) - expected) ** 2)) / travel(level, times))
 
 
-def way(level, times):
+def travel(level, times):
     """Of theory's front from the shape that it starts from [m]."""
     return level["lubrication_from_there_m"][-1] - level["front_m"][times.index(SHALLOW_FROM)]
 
 
 def criteria(numbers):
     slow, times, runout = numbers["slow"][-1], numbers["times"], numbers["tailings"][-1]["runout_m"][-1]
-    return [at_most("front against lubrication theory, rms over its way", error(slow, times), 2 * slow["spacing_m"] / way(slow, times), "two spacings, within which the surface is known"),
+    return [at_most("front against lubrication theory, rms over its travel", error(slow, times), 2 * slow["spacing_m"] / travel(slow, times), "two spacings, within which the surface is known"),
             at_most("run-out of the tailings over that of a soil everywhere at yield", runout / static_runout(), 1.0, "closed form, without inertia"),
             at_most("run-out of the tailings over the field's, less 1", abs(runout / FIELD - 1), 0.2, "the field's figures are round")]
 
@@ -134,7 +137,7 @@ def section(numbers, directory):
         rows.append([f"dx = {level['spacing_m']:g} m", *level["front_m"][-len(level["lubrication_from_there_m"]):], f"{100 * error(level, numbers['times']):.1f} %"])
         rows.append(["its farthest particle", *level["farthest_m"][-len(level["lubrication_from_there_m"]):], f"{100 * error(level, numbers['times'], 'farthest_m'):.1f} %"])
         rows.append(["lubrication from there", *level["lubrication_from_there_m"], ""])
-    text += table(["front [m] at"] + [f"{t:g} s" for t in numbers["times"] if t > SHALLOW_FROM] + ["rms difference over the way"], rows)
+    text += table(["front [m] at"] + [f"{t:g} s" for t in numbers["times"] if t > SHALLOW_FROM] + ["rms difference over the travel"], rows)
     text += f"\nTailings: run-out beyond the dam [m]; seen in the field: {FIELD:g} m; everywhere at yield: {static_runout():.0f} m:\n\n"
     text += table(["dx [m]", "30 s", "60 s", "90 s", "120 s", "120 s over the field's"],
                   [[level["spacing_m"], *level["runout_m"], level["runout_m"][-1] / FIELD] for level in numbers["tailings"]])

@@ -16,13 +16,18 @@ SOURCE = ("quasi-2D channels: Lube, Huppert, Sparks & Freundt, Phys. Rev. E 72 (
           "Staron & Hinch, J. Fluid Mech. 545 (2005) 1-27: run-out 2.5 a (a < 2), 3.25 a^0.7, height as a^0.35. Plane strain (no side walls), continuum of glass beads: "
           "Dunatunga & Kamrin, J. Fluid Mech. 779 (2015) 483-513: 2.28 a for short columns. All in half widths of the column")
 NOT_MET = {"exponent of the run-out, a < 2.5": 1.3, "exponent of the run-out, a > 2.5": 0.9}
-REMARKS = ("The exponents of Balmforth & Kerswell were read in their abstract. Lube's 1.2 a, 1.9 a^(2/3) and a^(2/5), Staron & Hinch's 2.5 a and Dunatunga & Kamrin's 2.28 a are as several "
-           "later works quote them alike (the limits of a differ: Staron & Hinch give 2.3 for both of Lube's); Staron & Hinch's law of tall columns and Lajeunesse's are as we remember them. "
-           "With sand's 31 deg run-outs lie with the channels', which is no confirmation: channels have side walls that hold the grains back, the model has none. The like-for-like comparison is the one with "
-           "other plane computations, for glass beads. The front of a deposit is known to within its foot that is thinner than two rows, and that foot creeps out with every refinement: "
-           "a published run-out should lie between the end of two rows and the farthest particle, and these two should not be far apart. "
-           "Both exponents of the run-out are above the published ones. For short columns it is in part the rule of two rows, which takes a relatively large part of a short run-out (the farthest "
-           "particle's exponent is nearer); why it is so for tall ones is not known. The law here has no friction that grows with the rate of shear.")
+REMARKS = ("The exponents of Balmforth & Kerswell are from their abstract. Lube's 1.2 a, 1.9 a^(2/3) and a^(2/5), "
+           "Staron & Hinch's 2.5 a and Dunatunga & Kamrin's 2.28 a are as several later works quote them (the limits "
+           "of a differ: Staron & Hinch give 2.3 for both of Lube's); Staron & Hinch's law of tall columns and "
+           "Lajeunesse's laws are quoted from memory. With the 31 deg of sand the run-outs agree with those in "
+           "channels, which is no evidence: channels have side walls that hold the grains back, the model has none. "
+           "The like-for-like comparison is the one with other plane computations, for glass beads. The front of a "
+           "deposit is known only to within its toe thinner than two rows, and that toe moves out with every "
+           "refinement: a published run-out should lie between the end of two rows and the farthest particle, and "
+           "these two should be close. Both exponents of the run-out are above the published ones. For short columns "
+           "this is partly due to the rule of two rows, which removes a relatively large part of a short run-out "
+           "(the exponent of the farthest particle is closer); for tall columns the reason is not known. The "
+           "constitutive model has no friction that grows with the shear rate.")
 HALF_WIDTH, PHI = 0.1, 31.0
 BEADS = math.degrees(math.atan(0.3819))  # friction of glass beads at vanishing rate, Jop, Forterre & Pouliquen, Nature 441 (2006) 727-730
 PLANE_STRAIN = 2.28  # run-out of short columns over a, Dunatunga & Kamrin 2015
@@ -108,7 +113,7 @@ def criteria(numbers):
             published("height, a > 1.15 (0.33 to 0.5)", found["height, a > 1.15"], 0.33, 0.5),
             at_most(f"glass beads, run-out of short columns over a to where thinner than two rows (plane strain: {PLANE_STRAIN})", two_rows, PLANE_STRAIN, "the front lies beyond two rows"),
             at_least(f"the same to the farthest particle (plane strain: {PLANE_STRAIN})", farthest, PLANE_STRAIN, "and not beyond the farthest particle"),
-            at_most("half their difference over plane strain's", 0.5 * (farthest - two_rows) / PLANE_STRAIN, 0.1, "so that the bracket says something")]
+            at_most("half their difference over plane strain's", 0.5 * (farthest - two_rows) / PLANE_STRAIN, 0.1, "so that the bracket is informative")]
 
 
 def section(numbers, directory):
@@ -133,7 +138,7 @@ def section(numbers, directory):
     rows = [[per_a[0]["a"], *(r[key] for key in ("runout", "farthest", "height") for r in per_a)] for per_a in zip(*(level["rows"] for level in numbers["levels"]))]
     fits = [exponents(level["rows"]) for level in numbers["levels"]]
     beads = [[r["a"], level["spacings_in_half_width"], r["runout"] / r["a"], r["farthest"] / r["a"]] for level in numbers["beads"] for r in level["rows"]]
-    return f"phi = {PHI:g} deg. Run-out: to where the deposit becomes thinner than two rows.\n\n" + \
+    return f"phi = {PHI:g} deg. Run-out: distance to where the deposit becomes thinner than two rows.\n\n" + \
         table(["a", *(f"{what}, half width {n} dx" for what in ("run-out", "farthest particle", "height") for n in counts)], rows) + "\n" + \
         table(["exponent (standard error)", *(f"half width {n} dx" for n in counts)], [[name, *(f"{fit[name][0]:.3f} ({fit[name][1]:.3f})" for fit in fits)] for name in FITS]) + \
         f"\nGlass beads, phi = {BEADS:.1f} deg; run-out over a of short columns, {PLANE_STRAIN} in plane strain, 2.5 of discs, 1.2 in channels:\n\n" + \

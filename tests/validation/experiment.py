@@ -1,17 +1,17 @@
-"""What an experiment is: a module with TITLE, SOURCE and three functions.
+"""An experiment is a module with TITLE, SOURCE and three functions.
 
-measure(work, coarse)     runs what is missing under the directory `work` and returns numbers (JSON); `coarse`: a few minutes at most
-criteria(numbers)         what must hold: a list of Criterion
+measure(work, coarse)     runs what is missing in the directory `work` and returns numbers (JSON); `coarse` takes at most a few minutes
+criteria(numbers)         list of Criterion
 section(numbers, figures) Markdown for the report; writes its figures into the directory `figures`
 
-Where it cannot meet a criterion, NOT_MET has how that one begins and the value that it still must not exceed, and REMARKS say why.
+NOT_MET maps the beginning of a criterion that is known to fail to a value that it must not exceed all the same; REMARKS explain why.
 """
 
 import csv
 import pathlib
 from typing import NamedTuple
 
-WANTED = "wanted beforehand"
+SET_BEFORE = "set before the runs"
 DATA = pathlib.Path(__file__).resolve().parent / "data"
 
 
@@ -29,15 +29,15 @@ class Criterion(NamedTuple):
         return (self.low is None or self.value >= self.low) and (self.high is None or self.value <= self.high)
 
 
-def at_most(what, value, high, why=WANTED):
+def at_most(what, value, high, why=SET_BEFORE):
     return Criterion(what, float(value), None, high, why)
 
 
-def at_least(what, value, low, why=WANTED):
+def at_least(what, value, low, why=SET_BEFORE):
     return Criterion(what, float(value), low, None, why)
 
 
-def within(what, value, low, high, why=WANTED):
+def within(what, value, low, high, why=SET_BEFORE):
     return Criterion(what, float(value), low, high, why)
 
 

@@ -1,8 +1,8 @@
 """The study of Zhang et al. 2020, Table 4: cases 1-9, each with three truncations of the random field.
 
-`python3 paper_study.py WORK [N ...]` brings all of them to N realizations each, in as many passes as there are Ns; stopped at any moment,
-the same command goes on. `--spacing 0.1` does so for the fine ones, those that say what the spacing makes of short correlation lengths. What is done
-is kept in books/, a directory of tables for each study, which any machine can go on from.
+`python3 paper_study.py WORK [N ...]` runs all of them up to N realizations each, in one pass per N; after an interruption the same command
+continues. `--spacing 0.1` does so for the studies at half the spacing, which show its effect on short correlation lengths. Finished realizations are
+kept in books/, a directory of tables for each study, from which any machine can continue.
 """
 
 import argparse
@@ -59,14 +59,14 @@ def read_rows(book):
 
 
 def advance(work, realizations, spacing=SPACING, books=BOOKS, chosen=tuple((t, c) for t in TRUNCATIONS for c in TABLE_4)):
-    """Every study to at least so many realizations. Realization i has the same draws in all cases."""
+    """Runs every study up to the given number of realizations. Realization i has the same draws in all cases."""
     for truncation, case in chosen:
         extend(pathlib.Path(work) / "paper_study" / f"dx{spacing:g}", books / name(case, truncation), realizations, settings(case, truncation, spacing))
         print(name(case, truncation), realizations, flush=True)
 
 
 def extend(work, book, realizations, chosen):
-    """Runs what the book lacks, and enters it."""
+    """Runs the missing realizations and adds them to the record."""
     rows = read_rows(book)
     if len(rows) >= realizations:
         return
@@ -83,7 +83,7 @@ def extend(work, book, realizations, chosen):
 
 
 def enter(study, book):
-    """Copies a study's tables; killed in between, it can be done again."""
+    """Copies a study's tables; may be repeated after an interruption."""
     book.mkdir(parents=True, exist_ok=True)
     for table_name in TABLES:
         shutil.copy(study / table_name, book / (table_name + ".new"))
@@ -91,16 +91,16 @@ def enter(study, book):
 
 
 def check_program(work, row, chosen):
-    """Runs one realization of the book again: a program that gives other bits must not go on with it."""
+    """Repeats one recorded realization: a program with different bits must not continue the record."""
     where = work / "again"
     shutil.rmtree(where, ignore_errors=True)
     found = talus_runs.run(talus_runs.CASES / "illustrative.json", where, chosen, threads=1, extra=["--realization", row["index"], "--seed", 1])["digest"]
     if found != row["digest"]:
-        raise SystemExit(f"realization {row['index']} has the digest {found} now, {row['digest']} in the books: start new ones")
+        raise SystemExit(f"realization {row['index']} has the digest {found}, its record {row['digest']}: this program cannot continue these records; start new ones")
 
 
 def measure(work, coarse):
-    """Reads what `advance` has entered in the books; coarse ones are made here."""
+    """Reads the records that `advance` wrote; coarse ones are computed here."""
     spacing, books = (0.8, pathlib.Path(work) / "books") if coarse else (SPACING, BOOKS)
     if coarse:
         advance(work, 20, spacing, books)
@@ -165,12 +165,12 @@ def criteria(numbers):
             if len(pair) == 2:
                 factor = sampling_factor(pair)
                 found.append(within(f"{truncation}: spread {what}", spread(pair[0]) / spread(pair[1]), expected(*pair) / factor, expected(*pair) * factor,
-                                    "proportion, and what chance may do at 95 %"))
+                                    "proportion, within sampling error at 95 %"))
     pair = series(numbers, "share", (1, 5))
     if len(pair) == 2:
-        found.append(at_most("share: spread of case 1 over case 5", spread(pair[0]) / spread(pair[1]), 0.6, "it grows"))
+        found.append(at_most("share: spread of case 1 over case 5", spread(pair[0]) / spread(pair[1]), 0.6, "spread grows with sigma"))
     floors = [s["influence_zone_m"]["noise_floor_stdev"] / spread(s) for s in numbers["studies"]]
-    return found + ([at_most("largest noise floor over a study's spread", max(floors), 0.1, "adds half a per cent to a spread")] if floors else [])
+    return found + ([at_most("largest numerical noise over a study's spread", max(floors), 0.1, "it adds half a per cent to the spread")] if floors else [])
 
 
 def spread(study, measure="influence_zone_m"):
@@ -192,9 +192,9 @@ def section(numbers, directory):
            "5 pairs of equal index; `share`: 95 % of the variance.\n\n"
     fewest = min(s["n"] for s in numbers["studies"])
     if fewest < WANTED:
-        text += f"Of the {WANTED} realizations wanted of each study at least {fewest} are done; the intervals say what that leaves open.\n\n"
-    text += "The noise floor is that of realization 0.\n\n"
-    text += table(["case", "modes", "sigma", "ell [m]", "N", "captured [%]", "mean [m]", "95 %", "stdev [m]", "95 %", "floor [mm]", "stdev of the centre of mass [m]"], rows)
+        text += f"Of {WANTED} planned realizations per study at least {fewest} are done.\n\n"
+    text += "The numerical noise is that of realization 0.\n\n"
+    text += table(["case", "modes", "sigma", "ell [m]", "N", "captured [%]", "mean [m]", "95 %", "stdev [m]", "95 %", "noise [mm]", "stdev of the centre of mass [m]"], rows)
     text += "\nSpread by measure [m]:\n\n" + table(["case", "modes", *MEASURES.values()], [[s["case"], s["truncation"], *(f"{spread(s, key):.3f}" for key in MEASURES)] for s in numbers["studies"]])
     return text + "\n" + draw(numbers, directory) + "\n" + fine(numbers) + conclusions(numbers)
 
@@ -211,7 +211,7 @@ def fine(numbers):
         return ""
     rows = [[s["case"], s["truncation"], *TABLE_4[s["case"]], s["n"], f"{s['influence_zone_m']['mean']:.3f}", interval(s["influence_zone_m"]["mean_ci95"]),
              f"{spread(s):.3f}", interval(s["influence_zone_m"]["stdev_ci95"]), f"{spread(s, 'front_mass_99_m'):.3f}", f"{spread(s, 'centre_of_mass_x_m'):.3f}"] for s in numbers["fine"]]
-    return f"At {FINE:g} m, as many as the machine's time allowed:\n\n" + \
+    return f"At {FINE:g} m, with fewer realizations:\n\n" + \
         table(["case", "modes", "sigma", "ell [m]", "N", "mean [m]", "95 %", "stdev [m]", "95 %", "stdev, 99 % of the mass [m]", "stdev, centre of mass [m]"], rows) + "\n"
 
 
@@ -225,7 +225,7 @@ def draw(numbers, directory):
             spread = np.array([s["influence_zone_m"]["stdev"] for s in found])
             low, high = np.array([s["influence_zone_m"]["stdev_ci95"] for s in found]).T
             axes.errorbar([TABLE_4[s["case"]][parameter] for s in found], spread, [spread - low, high - spread], fmt="o-", capsize=2, label=truncation)
-    left.set(xlabel="sigma of ln tan(phi)", ylabel="stdev of the influence zone [m]", ylim=(0, None))
+    left.set(xlabel="sigma of ln tan(phi)", ylabel="standard deviation of the run-out [m]", ylim=(0, None))
     right.set(xlabel="ell [m]", ylim=(0, None))
     left.legend()
     figure.tight_layout()
@@ -243,7 +243,7 @@ def histograms(numbers, directory):
         for panel, truncation in zip(row, TRUNCATIONS):
             for s in series(numbers, truncation, cases):
                 panel.hist(s["fronts"], bins=np.arange(30, 40, 0.25), histtype="step", density=True, label=f"{'ell' if parameter else 'sigma'} = {TABLE_4[s['case']][parameter]:g}{unit}")
-            panel.set(title=truncation, xlabel="influence zone [m]", xlim=(30.5, 37.5))
+            panel.set(title=truncation, xlabel="run-out distance [m]", xlim=(30.5, 37.5))
         row[-1].legend(fontsize=6)
     figure.tight_layout()
     return fig.save(figure, directory, "paper_study_histograms")
@@ -257,7 +257,7 @@ def means(numbers, directory):
                 mean, (low, high) = np.array([s["influence_zone_m"]["mean"] for s in found]), np.array([s["influence_zone_m"]["mean_ci95"] for s in found]).T
                 panel.errorbar([TABLE_4[s["case"]][parameter] for s in found], mean, [mean - low, high - mean], fmt="o-", capsize=2, label=truncation)
         panel.set(xlabel=label)
-    axes[0].set(ylabel="mean influence zone [m]")
+    axes[0].set(ylabel="mean run-out distance [m]")
     axes[0].legend()
     figure.tight_layout()
     return fig.save(figure, directory, "paper_study_means")
@@ -271,7 +271,7 @@ def ratio(pair, measure="influence_zone_m"):
 
 def growth(pair):
     """The ratios of the spreads by every measure, in words."""
-    return ", ".join(f"{name} {said(ratio(pair, key), 1)}" for key, name in MEASURES.items())
+    return ", ".join(f"{name} {with_interval(ratio(pair, key), 1)}" for key, name in MEASURES.items())
 
 
 def shift(pair, first=WANTED):
@@ -288,7 +288,7 @@ def correlation(study):
     return r, np.tanh(np.arctanh(r) - half), np.tanh(np.arctanh(r) + half)
 
 
-def said(found, digits=2):
+def with_interval(found, digits=2):
     value, low, high = found
     return f"{value:.{digits}f} ({low:.{digits}f} to {high:.{digits}f})"
 
@@ -317,18 +317,18 @@ def conclusions(numbers):
 
 def first_conclusion(by_length):
     five = "; ".join(f"`{t}` {share_captured(by_length[t])} %" for t in FIVE_MODES)
-    return ("1. *The expansion gives a reasonable random field.* Not confirmed for five modes: at ell = 0.1 ... 0.5 m the field has these shares of the variance stated: "
-            f"{five}. With as many modes as 95 % of the variance takes (`share`): confirmed, by construction.")
+    return ("1. *The expansion gives a reasonable random field.* Not confirmed for five modes: at ell = 0.1 ... 0.5 m the field captures these percentages of the specified variance: "
+            f"{five}. Confirmed, by construction, with enough modes for 95 % of the variance (`share`).")
 
 
 def second_conclusion(by_sigma):
     case_3 = {t: studies[2] for t, studies in by_sigma.items()}
     confirmed = all(correlation(s)[2] < 0 for s in case_3.values())
-    found = "; ".join(f"`{t}` {said(correlation(s))}, {s['front_by_angle']:.2f} m per degree" for t, s in case_3.items())
+    found = "; ".join(f"`{t}` {with_interval(correlation(s))}, {s['front_by_angle']:.2f} m per degree" for t, s in case_3.items())
     explained = case_3["share"]["correlation_with_angle"] ** 2
     return (f"2. *A larger friction angle shortens the run-out.* {'Confirmed' if confirmed else 'Not confirmed for all truncations'}: "
-            f"correlation of the influence zone with the mean angle in case 3: {found}. With 95 % of the variance the mean angle explains {100 * explained:.0f} % of the run-out's variance: "
-            "where the weak soil lies matters as much. (The impact force, of which the paper says the same, was not looked at.)")
+            f"correlation of the run-out distance with the mean angle in case 3: {found}. With 95 % of the variance the mean angle explains {100 * explained:.0f} % of the run-out's variance: "
+            "the position of the weak soil matters as much. (The impact force, which the paper includes in this conclusion, was not examined.)")
 
 
 def third_conclusion(numbers, by_sigma):
@@ -336,10 +336,10 @@ def third_conclusion(numbers, by_sigma):
     confirmed = all(low > 1 for measures in grows.values() for _, low, _ in measures.values())
     found = "; ".join(f"`{t}` {growth((studies[0], studies[4]))}" for t, studies in by_sigma.items())
     floor = max(s["influence_zone_m"]["noise_floor_stdev"] / spread(s) for studies in by_sigma.values() for s in studies)
-    slower = " With 95 % of the variance the farthest particle's grows less than in proportion." if grows["share"]["influence_zone_m"][2] < 5 else ""
+    slower = " With 95 % of the variance the spread of the farthest particle grows less than in proportion." if grows["share"]["influence_zone_m"][2] < 5 else ""
     pair = fine_pair(numbers, "share", (1, 5))
     finer = f" At {FINE:g} m, `share` (N = {min(s['n'] for s in pair)}): {growth(pair)}." if pair else ""
-    return (f"3. *The spread grows with the coefficient of variation.* {'Confirmed' if confirmed else 'Not confirmed'}, by every measure. Times from case 1 to 5, where sigma grows 5 times: "
+    return (f"3. *The spread grows with the coefficient of variation.* {'Confirmed' if confirmed else 'Not confirmed'}, by every measure. Growth factors from case 1 to 5, where sigma grows by a factor of 5: "
             f"{found}.{slower}{finer} "
             f"The numerical noise is at most {100 * floor:.1f} % of a spread.")
 
@@ -349,31 +349,31 @@ def fourth_conclusion(numbers, by_length):
     ends = {t: (studies[0], studies[4]) for t, studies in by_length.items()}
     pair, five_modes = (fine_pair(numbers, t, (6, 3)) for t in ("share", "sorted"))
     rooted = np.sqrt(ends["sorted"][1]["captured"] / ends["sorted"][0]["captured"])
-    text = "4. *Too small a correlation length underestimates the spread (which widens above ell/dx = 3).* Growth of the spread from ell = 0.1 to 0.5 m, in times. "
+    text = "4. *Too small a correlation length underestimates the spread (which widens above ell/dx = 3).* Growth factors of the spread from ell = 0.1 to 0.5 m. "
     if pair:
         confirmed = all(ratio(pair, key)[1] > 1 for key in MEASURES)
-        text += (f"{'Confirmed' if confirmed else 'Not decided'} at {FINE:g} m with 95 % of the variance (ell/dx of 1 and 5, N = {min(s['n'] for s in pair)}): {growth(pair)}. So truncation alone does not make it: "
-                 "the deviation of an area's mean grows with ell, and the slide follows it. ")
+        text += (f"{'Confirmed' if confirmed else 'Not decided'} at {FINE:g} m with 95 % of the variance (ell/dx of 1 and 5, N = {min(s['n'] for s in pair)}): {growth(pair)}. So truncation alone is not the cause: "
+                 "the standard deviation of an area average grows with ell, and the run-out follows it. ")
     if five_modes:
         text += f"`sorted` there (N = {min(s['n'] for s in five_modes)}): {growth(five_modes)}. "
-    return text + (f"At {numbers['spacing_m']:g} m: `share` {growth(ends['share'])}; `sorted` {growth(ends['sorted'])}, where the root of the variance captured grows {rooted:.2f} times. Five modes carry little but "
-                   "the mean over areas, and exaggerate the growth of the fronts' spread; the centre of mass feels little else than that mean. "
-                   f"At {numbers['spacing_m']:g} m ell/dx is 0.5 to 2.5: a particle has the whole variance of a point where it should have that of its own area's mean, so that with `share` the fronts' spread may be "
-                   "too large at short ell (`random_field.cell_average`, which would give it that mean, is off here as in the paper). Whether the spread widens above ell/dx = 3 as such was not looked at.")
+    return text + (f"At {numbers['spacing_m']:g} m: `share` {growth(ends['share'])}; `sorted` {growth(ends['sorted'])}, where the square root of the captured variance grows by a factor of {rooted:.2f}. Five modes represent little more than "
+                   "area averages, and exaggerate the growth of the fronts' spread; the centre of mass responds mainly to that average. "
+                   f"At {numbers['spacing_m']:g} m ell/dx is 0.5 to 2.5: a particle has the variance of a point instead of that of its area average, so with `share` the fronts' spread may be "
+                   "too large at short ell (`random_field.cell_average`, which applies that average, is off here as in the paper). Whether the spread widens above ell/dx = 3 as such was not examined.")
 
 
 def the_mean(numbers, by_sigma):
     shifts = {t: shift((studies[0], studies[4])) for t, studies in by_sigma.items()}
-    moved = "; ".join(f"`{t}` {said(found)} m" for t, found in shifts.items())
-    further = " With its whole variance, uneven strength makes the slide go further on the average." if shifts["share"][1] > 0 else ""
+    moved = "; ".join(f"`{t}` {with_interval(found)} m" for t, found in shifts.items())
+    further = " With its full variance, the variability of strength increases the mean run-out." if shifts["share"][1] > 0 else ""
     pair = fine_pair(numbers, "share", (1, 5))
     finer = ""
     if pair:
         drawn = min(s["n"] for s in pair)
         here, coarse = shift(pair), shift((by_sigma["share"][0], by_sigma["share"][4]), drawn)
-        finer = f" At {FINE:g} m, `share` (N = {drawn}): {said(here)} m, where the same draws give {said(coarse)} m at {numbers['spacing_m']:g} m"
+        finer = f" At {FINE:g} m, `share` (N = {drawn}): {with_interval(here)} m, compared with {with_interval(coarse)} m for the same draws at {numbers['spacing_m']:g} m"
         finer += ": it has not converged in the spacing." if here[1] > coarse[2] else "."
-    return ("\n*The mean* stays near 34.1 m in the paper. Here, from case 1 to 5, realization by realization, it moves by " + moved + "." + further + finer)
+    return ("\n*The mean* stays near 34.1 m in the paper. Here, compared realization by realization, it changes from case 1 to 5 by " + moved + "." + further + finer)
 
 
 def main():

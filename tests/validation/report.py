@@ -2,8 +2,8 @@
 
 report.py WORK [--coarse] [--only NAME ...] [--from-numbers] [--out DIR]
 
-Runs go into WORK and are not repeated. Numbers go into DIR/results/NAME.json, figures into DIR/figures, the page into DIR/REPORT.md; with
---from-numbers the page is written again from the numbers that are there, without any run.
+Runs are kept in WORK and not repeated. Numbers are written to DIR/results/NAME.json, figures to DIR/figures, the page to DIR/REPORT.md. With
+--from-numbers the page is written from the existing numbers, without any run.
 """
 
 import argparse
@@ -34,9 +34,11 @@ def span(criterion):
 def page(results, out):
     """Markdown of all experiments that have numbers."""
     modules = {name: importlib.import_module(name) for name in results}
-    lines = ["# Validation", "", "Written by `tests/validation/report.sh`. Every number of a table comes from a run that this repeats; remarks say where one does not.", "",
-             (HERE / "summary.md").read_text(), "## All criteria", "",
-             "| experiment | criterion | found | wanted | why so | |", "|---|---|---|---|---|---|"]
+    found = [c for name, numbers in results.items() for c in modules[name].criteria(numbers)]
+    summary = (HERE / "summary.md").read_text().replace("@COUNT@", str(len(found))).replace("@FAILED@", str(sum(not c.met for c in found)))
+    lines = ["# Validation", "", "Written by `tests/validation/report.sh`, which repeats every run behind the tables. Where a number in a remark comes from another run, the remark says so.", "",
+             summary, "## All criteria", "",
+             "| experiment | criterion | value | acceptance limit | origin of the limit | |", "|---|---|---|---|---|---|"]
     for name, numbers in results.items():
         for c in modules[name].criteria(numbers):
             lines.append(f"| [{modules[name].TITLE}](#{anchor(modules[name].TITLE)}) | {c.what} | {c.value:.3g} | {span(c)} | {c.why} | {'met' if c.met else '**not met**'} |")

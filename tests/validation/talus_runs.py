@@ -12,7 +12,7 @@ TALUS = os.environ.get("TALUS", str(REPOSITORY / "build" / "release" / "bin" / "
 
 
 class RunFailed(RuntimeError):
-    """talus ended with another exit code than 0; the message ends with what it said."""
+    """talus ended with an exit code other than 0; the message ends with its stderr."""
 
 
 def override(settings):

@@ -57,7 +57,7 @@ TEST(Charts, HistogramSetsSpreadAndNoiseFloorOnOneScale) {
   EXPECT_NEAR(block(script, "strip3")[0][1], *q.mean_ci95->hi, 1e-5);
   EXPECT_NEAR(block(script, "strip2")[0][1] - block(script, "strip2")[0][0], 2 * *q.stdev, 1e-5);
   EXPECT_NEAR(block(script, "strip1")[0][1] - block(script, "strip1")[0][0], 2 * *q.noise_floor_stdev, 1e-5);
-  EXPECT_TRUE(contains(histogram_sheet(example(50, false, false)).script.text(), "noise floor not measured"));
+  EXPECT_TRUE(contains(histogram_sheet(example(50, false, false)).script.text(), "numerical noise not measured"));
 }
 
 TEST(Charts, HistogramTellsWhatItLeavesOut) {
