@@ -30,14 +30,14 @@ int main(int argc, char** argv) {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // what large arrays no longer need goes back to the system
 #endif
-  CLI::App app{"Talus: how far will it run, and how sure are we?", "talus"};
+  CLI::App app{"Talus: run-out of landslides and its uncertainty", "talus"};
   app.set_version_flag("--version", talus::cli::version_text());
   app.require_subcommand(1);
   app.footer(
       "Exit codes: 0 ok, 1 internal, 2 usage, 3 bad case, 4 diverged, 5 input/output, 6 stopped with a checkpoint, 7 "
       "too many failed runs");
   if (const char* simd = std::getenv("TALUS_SIMD"); simd && *simd && !talus::limit_pair_loops(simd))
-    return report(Exit::usage, "TALUS_SIMD must be AVX2 or SSE4 (or unset: the best that the processor has)");
+    return report(Exit::usage, "TALUS_SIMD must be AVX2 or SSE4, or unset for the best that the processor supports");
   talus::cli::Action action;
   talus::cli::add_validate(app, action);
   talus::cli::add_run(app, action);

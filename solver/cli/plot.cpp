@@ -20,7 +20,8 @@ struct PlotOptions {
 std::vector<fs::path> draw(const fs::path& directory) {
   if (fs::exists(directory / "study.json")) return plot_study(directory);
   if (fs::exists(directory / "result.json")) return plot_run(directory);
-  throw IoError(directory.string() + " holds neither study.json nor result.json: not a finished study or run");
+  throw IoError(directory.string() +
+                " contains neither study.json nor result.json; it is not the directory of a finished study or run");
 }
 
 Exit plot(const PlotOptions& options) {
@@ -39,9 +40,9 @@ Exit plot(const PlotOptions& options) {
 
 void add_plot(CLI::App& app, Action& action) {
   auto options = std::make_shared<PlotOptions>();
-  CLI::App* verb = app.add_subcommand("plot", "Draw the figures of a study or run into DIR/figures, from its files");
+  CLI::App* verb = app.add_subcommand("plot", "Draw the figures of a study or run into DIR/figures");
   verb->add_option("directory", options->directory, "directory of a study or run")->required();
-  verb->add_flag("--json", options->json, "print the paths as one JSON value");
+  verb->add_flag("--json", options->json, "print the paths as JSON");
   verb->callback([options, &action] { action = [options] { return plot(*options); }; });
 }
 

@@ -41,7 +41,7 @@ ordered_json columns(const Frame& frame) {
 Exit profile(const ProfileOptions& options) {
   const fs::path snapshots = options.directory / "snapshots.vtkhdf";
   const std::size_t n = snapshot_times(snapshots).size();
-  if (n == 0) throw IoError(snapshots.string() + " holds no snapshot");
+  if (n == 0) throw IoError(snapshots.string() + " contains no snapshot");
   const Frame frame = read_frame(snapshots, n - 1);
   if (options.out.extension() == ".json") {
     write_file_atomically(options.out, columns(frame).dump() + "\n");
@@ -67,9 +67,11 @@ std::string known_ending(const std::string& path) {
 
 void add_profile(CLI::App& app, Action& action) {
   auto options = std::make_shared<ProfileOptions>();
-  CLI::App* verb = app.add_subcommand("profile", "Write the slide as a finished run left it: .json, .svg or .png");
+  CLI::App* verb = app.add_subcommand("profile", "Write the final profile of a run as .json, .svg or .png");
   verb->add_option("directory", options->directory, "directory of a finished run")->required();
-  verb->add_option("--out", options->out, "file to write; the ending says what")->required()->check(known_ending);
+  verb->add_option("--out", options->out, "output file; format is taken from the extension")
+      ->required()
+      ->check(known_ending);
   verb->callback([options, &action] { action = [options] { return profile(*options); }; });
 }
 

@@ -31,7 +31,7 @@ struct RemoteOptions {
 
 std::string path_of(const std::string& job) {
   if (job.empty() || job.find_first_not_of("0123456789abcdef") != std::string::npos)
-    throw ConfigError("", "\"" + job + "\" is not the name of a job; talus status lists them");
+    throw ConfigError("", "\"" + job + "\" is not a job ID; talus status lists the jobs");
   return "/jobs/" + job;
 }
 
@@ -156,30 +156,30 @@ CLI::App* add_verb(CLI::App& app, Action& action, const char* name, const char* 
 void add_remote(CLI::App& app, Action& action) {
   const auto make = [] { return std::make_shared<RemoteOptions>(); };
   auto options = make();
-  CLI::App* verb = add_verb(app, action, "submit", "Hand a study to a talusd; prints the job's name", options, submit);
-  verb->add_option("case", options->case_file, "case file (JSON); files that it names are sent along")->required();
-  verb->add_option("--realizations", options->realizations, "how many; otherwise the case's")
+  CLI::App* verb = add_verb(app, action, "submit", "Submit a study to talusd; prints the job ID", options, submit);
+  verb->add_option("case", options->case_file, "case file (JSON); the CSV files it names are sent with it")->required();
+  verb->add_option("--realizations", options->realizations, "number of realizations; default: that of the case")
       ->check(CLI::Range(1, 1'000'000'000));
   verb->add_option("--seed", options->seed,
-                   "seed of the random fields; otherwise the case's, otherwise the server chooses")
+                   "seed of the random fields; default: that of the case, or one chosen by the server")
       ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));
   verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")
       ->allow_extra_args(false);
-  verb->add_flag("--watch", options->watch, "stay until it has ended");
+  verb->add_flag("--watch", options->watch, "wait until the job ends");
   options = make();
-  add_verb(app, action, "status", "How a job is getting on; without a name all of them", options, status)
-      ->add_option("job", options->job, "name of the job");
+  add_verb(app, action, "status", "Show job status (all jobs if no ID is given)", options, status)
+      ->add_option("job", options->job, "job ID");
   options = make();
-  add_verb(app, action, "watch", "Follow a job to its end", options, watch)
-      ->add_option("job", options->job, "name of the job")
+  add_verb(app, action, "watch", "Show the progress of a job until it ends", options, watch)
+      ->add_option("job", options->job, "job ID")
       ->required();
   options = make();
-  verb = add_verb(app, action, "results", "The results of a job", options, results);
-  verb->add_option("job", options->job, "name of the job")->required();
-  verb->add_option("--out", options->out, "file to write them to (JSON)");
+  verb = add_verb(app, action, "results", "Print the results of a job", options, results);
+  verb->add_option("job", options->job, "job ID")->required();
+  verb->add_option("--out", options->out, "output file (JSON)");
   options = make();
-  add_verb(app, action, "cancel", "Dismiss a job and remove its files", options, cancel)
-      ->add_option("job", options->job, "name of the job")
+  add_verb(app, action, "cancel", "Cancel a job and remove its files", options, cancel)
+      ->add_option("job", options->job, "job ID")
       ->required();
 }
 

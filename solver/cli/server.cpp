@@ -55,9 +55,10 @@ class TalusServer::Connection {
 
   ordered_json answer(const httplib::Result& result) const {
     if (!result)
-      throw IoError("cannot reach " + url + ": " + httplib::to_string(result.error()) + "; does talusd run there?");
+      throw IoError("cannot reach " + url + ": " + httplib::to_string(result.error()) +
+                    "; check that talusd is running there and that the URL is right");
     const ordered_json body = ordered_json::parse(result->body, nullptr, false);
-    if (body.is_discarded()) throw IoError(url + " does not answer as talusd does");
+    if (body.is_discarded()) throw IoError(url + " answered, but not as talusd; check the URL");
     if (result->status < 300) return body;
     const std::string detail = body.value("detail", "status " + std::to_string(result->status));
     std::vector<Fault> faults;
@@ -79,7 +80,7 @@ class TalusServer::Connection {
 void add_server_options(CLI::App& verb, ServerOptions& options) {
   options.url = "http://127.0.0.1:8080";
   verb.add_option("--server", options.url, "URL of talusd")->envname("TALUS_SERVER")->capture_default_str();
-  verb.add_option("--token-file", options.token_file, "file with the token; otherwise TALUS_TOKEN, if set");
+  verb.add_option("--token-file", options.token_file, "file with the token; default: TALUS_TOKEN");
 }
 
 TalusServer::TalusServer(const ServerOptions& options) : connection_(std::make_unique<Connection>(options)) {}
