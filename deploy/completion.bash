@@ -1,4 +1,4 @@
-# bash completion of talus and talusd: verbs and options as their --help has them, so that it never falls behind.
+# bash completion of talus and talusd: subcommands and options are read from --help, so they are always current.
 
 # Options of a command line such as `talus run`.
 _talus_options() {

@@ -29,14 +29,14 @@ if [ -z "${TALUS_SERVER:-}" ]; then
   find "$out/figures/" -type f | sort | sed 's/^/             /'
 
   data=$(mktemp -d)
-  "$bin/talusd" --data "$data" --listen 127.0.0.1:0 --workers "$(nproc)" --min-disk 100 >"$data/said" 2>"$data/log" &
+  "$bin/talusd" --data "$data" --listen 127.0.0.1:0 --workers "$(nproc)" --min-disk 100 >"$data/stdout" 2>"$data/log" &
   talusd=$!
   trap 'kill $talusd 2>/dev/null; wait $talusd 2>/dev/null || true; rm -rf "$data"' EXIT
   for _ in $(seq 100); do
-    [ -s "$data/said" ] && break
+    [ -s "$data/stdout" ] && break
     sleep 0.1
   done
-  TALUS_SERVER=$(sed -n 's/.*listens on //p' "$data/said")
+  TALUS_SERVER=$(sed -n 's/.*listens on //p' "$data/stdout")
   [ -n "$TALUS_SERVER" ] || { cat "$data/log" >&2; exit 1; }
 fi
 export TALUS_SERVER

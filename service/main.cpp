@@ -39,7 +39,7 @@ void raise_file_limit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-/// A lock; who was killed holds it for a moment longer.
+/// Takes a lock; a killed process keeps it for a moment longer.
 /// @param inherited  whether workers hold it, too
 Descriptor wait_for_lock(const std::filesystem::path& path, bool inherited, std::chrono::seconds patience,
                          const std::string& otherwise) {

@@ -12,7 +12,7 @@ namespace {
 using std::chrono::duration_cast;
 using std::chrono::milliseconds;
 
-constexpr milliseconds glance{250};  ///< between two looks at whether we are stopping
+constexpr milliseconds glance{250};  ///< interval between checks for shutdown
 constexpr milliseconds linger{500};
 
 }  // namespace

@@ -40,7 +40,7 @@ class Connection {
   /// Writes all of it, or fails: the other side is gone, too slow, or we are stopping.
   bool write(const char* data, std::size_t size);
   bool write(const std::string& text) { return write(text.data(), text.size()); }
-  /// Ends our side, and reads on for a moment so that the other side sees what we last said.
+  /// Closes the sending side and keeps reading for a moment, so that the client receives the last response.
   void finish();
   int socket() const { return fd_.get(); }
 

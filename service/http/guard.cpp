@@ -8,7 +8,7 @@
 namespace talus::service {
 namespace {
 
-/// The headers that a handler looks at, and how often each may stand.
+/// The headers passed on to handlers, and whether each may be repeated.
 constexpr std::array<std::string_view, 10> handed_on{
     "host",   "accept",        "authorization",     "prefer",      "idempotency-key", "if-none-match",
     "origin", "last-event-id", "x-forwarded-proto", "x-request-id"};

@@ -1,5 +1,5 @@
 #pragma once
-// What a request may look like before the HTTP library sees any of it.
+// Checks a request before the HTTP library sees any of it.
 //
 // Debian 12's cpp-httplib (0.11.4) takes chunked bodies beyond its limit, Content-Length together with chunked,
 // thousands of ranges, %0d%0a in header values (which it decodes), and any number of headers. So a request's bytes are

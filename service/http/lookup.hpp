@@ -20,7 +20,7 @@ std::optional<double> real_number(const Incoming& request, const std::string& na
 /// Refuses parameters that nobody reads. @throws Refusal bad_request
 void only_parameters(const Incoming& request, std::initializer_list<const char*> known);
 
-/// The query of a request again, as in "?a=b&c=d", with one parameter set anew; empty without parameters.
+/// The query of a request, as in "?a=b&c=d", with one parameter replaced; empty without parameters.
 std::string query_text(const Incoming& request, const std::optional<std::pair<std::string, std::string>>& set = {});
 
 /// "a,b" as its parts.

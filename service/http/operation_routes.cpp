@@ -1,4 +1,4 @@
-// For who runs the service: is it alive, is it ready, what has it done.
+// For the operator: liveness, readiness, metrics.
 
 #include "http/service.hpp"
 #include "support/files.hpp"

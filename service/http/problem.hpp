@@ -7,7 +7,7 @@
 namespace talus::service {
 
 /// The answer to a refused request: {type, title, status, detail, errors}.
-/// @param accept  the client's Accept header: problem+json only for who asks for it
+/// @param accept  the client's Accept header: problem+json only for clients that ask for it
 Answer problem(const Refusal& refusal, const std::string& accept);
 
 /// The answer to any exception; what it was is told only where a client can do something about it.

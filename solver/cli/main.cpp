@@ -1,4 +1,4 @@
-// talus: one verb a file; errors become exit codes here and nowhere else.
+// talus: one file per subcommand; errors become exit codes here and nowhere else.
 
 #include <csignal>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// talus submit, status, watch, results, cancel: the verbs that speak to a talusd.
+// talus submit, status, watch, results, cancel: the subcommands that use a talusd.
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -57,7 +57,7 @@ int terminal_width() {
   return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
-/// Follows a job to its end, with a bar on a terminal and a line now and then elsewhere.
+/// Shows the progress of a job until it ends: a bar on a terminal, occasional lines elsewhere.
 ordered_json follow(TalusServer& server, const std::string& job) {
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   const auto begin = std::chrono::steady_clock::now();
@@ -141,7 +141,7 @@ Exit cancel(const RemoteOptions& options) {
   return Exit::ok;
 }
 
-/// A verb with the options that all of them have.
+/// A subcommand with the common options.
 CLI::App* add_verb(CLI::App& app, Action& action, const char* name, const char* help,
                    const std::shared_ptr<RemoteOptions>& options, Exit (*carry_out)(const RemoteOptions&)) {
   CLI::App* verb = app.add_subcommand(name, help);

@@ -1,5 +1,5 @@
 #pragma once
-// A talusd, as the client verbs speak to it.
+// Client of a talusd, for the remote subcommands.
 
 #include <CLI/CLI.hpp>
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace talus::cli {
 
-/// Where it is and who we are.
+/// URL and token.
 struct ServerOptions {
   std::string url;         ///< --server, else TALUS_SERVER, else the default address of talusd
   std::string token_file;  ///< --token-file; else TALUS_TOKEN holds the token itself

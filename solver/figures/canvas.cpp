@@ -29,10 +29,10 @@ std::string terminal(const Canvas& canvas, bool svg) {
   const int scale = svg ? 1 : png_scale;
   const std::string size = "size " + std::to_string(std::lround(scale * canvas.width)) + "," +
                            std::to_string(std::lround(scale * canvas.height));
-  const std::string look = size + " noenhanced font 'sans-serif,10' background '#ffffff'";
-  if (svg) return "set terminal svg " + look + "\n";
+  const std::string style = size + " noenhanced font 'sans-serif,10' background '#ffffff'";
+  if (svg) return "set terminal svg " + style + "\n";
   const std::string times = std::to_string(scale);
-  return "set terminal pngcairo " + look + " fontscale " + times + " linewidth " + times + " pointscale " + times +
+  return "set terminal pngcairo " + style + " fontscale " + times + " linewidth " + times + " pointscale " + times +
          "\n";
 }
 

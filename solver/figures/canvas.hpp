@@ -1,5 +1,5 @@
 #pragma once
-// The sheet that every figure is drawn on: size, title, source line, panels placed to the pixel, one look.
+// The sheet of every figure: size, title, source line, panels placed to the pixel, common style.
 
 #include <filesystem>
 #include <string>
@@ -32,7 +32,7 @@ struct Stamps {
 
 enum class Align { left, centre, right };
 
-/// Starts a figure: look, stamps, multiplot. `reserved` px at the upper right stay free of the title.
+/// Starts a figure: style, stamps, multiplot. `reserved` px at the upper right stay free of the title.
 Script begin(const Canvas& canvas, const Stamps& stamps, double reserved = 0.0);
 
 /// Where the next plot goes: `set lmargin at screen` and so on.
@@ -48,7 +48,7 @@ void colour_bar(Script& script, const Canvas& canvas, const Panel& bar, std::str
 /// A step of 1, 2 or 5 times a power of ten that divides `range` into about `parts`.
 double nice_step(double range, int parts);
 
-/// Draws the figure to a file ending in .svg or .png; it appears by rename.
+/// Draws the figure to a file ending in .svg or .png; written atomically.
 /// @throws IoError when gnuplot is missing or fails, the file cannot be written, or has another ending
 void save(const Script& script, const Canvas& canvas, const std::filesystem::path& path);
 

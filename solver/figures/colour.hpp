@@ -17,7 +17,7 @@ std::string colour_name(Colour colour);
 /// The quantity of one particle in the unit of the picture: m/s, degrees, m, kPa.
 double colour_value(const Frame& frame, std::size_t i, Colour colour);
 
-/// Each quantity has a palette of its own.
+/// Each quantity has its own palette.
 const Palette& palette_of(Colour colour);
 
 /// Span of the colour bar, in the unit of the picture.

@@ -10,8 +10,8 @@ namespace talus {
 /// study.json, realizations.csv, case.resolved.json and profiles/{first,worst}.vtkhdf. What has no file (a merged study
 /// keeps no profiles) is left out.
 /// @return the files drawn
-/// @throws IoError when gnuplot is missing ("install gnuplot-nox"), a file is missing or damaged, or nothing has come
-/// to its end
+/// @throws IoError when gnuplot is missing ("install gnuplot-nox"), a file is missing or damaged, or no realization is
+/// done
 std::vector<std::filesystem::path> plot_study(const std::filesystem::path& directory);
 
 /// Draws a run's profiles at its snapshot times to DIR/figures/, from snapshots.vtkhdf, result.json and

@@ -26,7 +26,7 @@ struct Quantity {
   std::map<double, double> quantiles;  ///< value at probability
 };
 
-/// A realization that came to its end.
+/// A finished realization.
 struct Done {
   std::int64_t index;
   double influence_zone;  ///< [m]

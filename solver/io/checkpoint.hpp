@@ -24,7 +24,7 @@ struct CheckpointHeader {
   bool operator==(const CheckpointHeader&) const = default;
 };
 
-/// Writes a checkpoint by rename. Every number comes back bit for bit.
+/// Writes a checkpoint atomically. Every number is restored bit for bit.
 /// @throws IoError naming the path; an older checkpoint is then untouched
 /// @throws std::invalid_argument when an array has no name, or one that HDF5 cannot store ('/', '.')
 void write_checkpoint(const std::filesystem::path& path, const State& state, const CheckpointHeader& header);

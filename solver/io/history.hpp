@@ -13,12 +13,12 @@ namespace talus {
 /// The shortest decimal number that reads back as the same double; the locale plays no part.
 std::string format_number(double value);
 
-/// Writes all rows, by rename: columns time_s, step, front_m, centre_of_mass_x_m, kinetic_energy_J_per_m,
+/// Writes all rows atomically: columns time_s, step, front_m, centre_of_mass_x_m, kinetic_energy_J_per_m,
 /// max_speed_m_s.
 /// @throws IoError naming the path; an older file is then untouched
 void write_history(const std::filesystem::path& path, std::span<const HistoryRow> rows);
 
-/// Reads them back, bit for bit; a run that resumes goes on from these.
+/// Reads them back, bit for bit; a resumed run continues from these.
 /// @throws IoError naming the path and the line
 std::vector<HistoryRow> read_history(const std::filesystem::path& path);
 

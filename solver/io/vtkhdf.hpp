@@ -24,7 +24,7 @@ namespace talus {
 /// for a step is reserved before it is written, so that a full disk leaves the earlier steps readable.
 class SnapshotWriter {
  public:
-  /// Creates the file (by rename, over an older one) and its sidecar with the first step.
+  /// Creates the file atomically, replacing an older one, and its sidecar with the first step.
   /// @throws IoError naming the path; std::invalid_argument when the frame's arrays differ in length or are empty
   SnapshotWriter(std::filesystem::path path, const Frame& first);
 
@@ -65,7 +65,7 @@ struct NamedArray {
   std::span<const double> values;
 };
 
-/// Writes points with arrays as a VTKHDF file of a single time (float64), by rename.
+/// Writes points with arrays as a VTKHDF file of a single time (float64), atomically.
 /// @throws IoError naming the path; std::invalid_argument when an array's length is not that of `positions`
 void write_points(const std::filesystem::path& path, std::span<const Vec2> positions,
                   std::span<const NamedArray> arrays);

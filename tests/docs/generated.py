@@ -2,7 +2,7 @@
 """The parts of the documentation that follow from the programs: options in the man pages from --help, keys of a case in
 solver/README.md from its schema.
 
-usage: generated.py TALUS TALUSD [--write]     compares (exit 1 and the first difference), or writes the parts anew
+usage: generated.py TALUS TALUSD [--write]     compares (exit 1 and the first difference), or writes the parts
 Where it goes lies between two lines that contain `begin generated` and `end generated`.
 """
 import difflib

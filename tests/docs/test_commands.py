@@ -3,7 +3,7 @@
 usage: test_commands.py TALUSD SOURCE_DIR
 
 A block marked `sh elsewhere` installs, needs root, or takes hours: each of its lines is run by what ELSEWHERE says.
-Of `talus ...` and `--option` in running text, verbs and options must exist.
+Subcommands and options named in running text (`talus ...`, `--option`) must exist; links must lead somewhere.
 """
 import itertools
 import json

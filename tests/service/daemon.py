@@ -1,4 +1,4 @@
-"""A talusd of its own for a test, and how to speak to it; without any package from outside."""
+"""A talusd for one test, and a client for it; standard library only."""
 import http.client
 import json
 import os
@@ -52,10 +52,10 @@ class Daemon:
             line = self.process.stdout.readline()
             found = re.search(r"listens on (http://127\.0\.0\.1:(\d+))", line)
             if not found:
-                raise AssertionError(f"talusd did not start: {line!r} {self.said()}")
+                raise AssertionError(f"talusd did not start: {line!r} {self.log_text()}")
             self.url, self.port = found[1], int(found[2])
 
-    def said(self):
+    def log_text(self):
         return (self.data.parent / "talusd.log").read_text()[-2000:]
 
     def request(self, method, path, body=None, headers=None, token=None, timeout=60):
@@ -171,7 +171,7 @@ class ServiceTest(unittest.TestCase):
 
 
 def digests(data, job):
-    """Index to digest of every realization in the books on disk."""
+    """Index to digest of every realization in the records on disk."""
     found = {}
     for path in sorted((pathlib.Path(data) / "jobs" / job / "runs").glob("[0-9]*.json")):
         if not path.name.endswith(".failed.json"):

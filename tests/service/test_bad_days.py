@@ -157,12 +157,12 @@ class BadDays(ServiceTest):
         connection.close()
         refused = Daemon(data, wait=False)
         self.assertEqual(refused.process.wait(10), 5)
-        self.assertIn("newer", refused.said())
+        self.assertIn("newer", refused.log_text())
         refused.close()
         (data / "queue.sqlite").write_bytes(b"this is no database" * 100)
         refused = Daemon(data, wait=False)
         self.assertEqual(refused.process.wait(10), 5)
-        self.assertIn("talusd:", refused.said())
+        self.assertIn("talusd:", refused.log_text())
         refused.close()
 
     def test_the_clock_jumps(self):

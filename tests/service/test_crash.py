@@ -52,7 +52,7 @@ class Crash(ServiceTest):
         self.start()
         second = Daemon(self.daemon.data, wait=False)
         self.assertEqual(second.process.wait(10), 5)
-        self.assertIn("another talusd", second.said())
+        self.assertIn("another talusd", second.log_text())
         second.close()
         self.assertEqual(self.daemon.get("/healthz").status, 200)
 

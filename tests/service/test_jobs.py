@@ -277,7 +277,7 @@ class Queue(ServiceTest):
         self.assertEqual({p.stem: json.loads(p.read_text())["digest"] for p in (orphans / job / "runs").iterdir()}, kept)
         self.assertEqual((orphans / "notes-2/important.txt").read_text(), "mine")
         self.assertIn(b"talus_orphans 2", self.daemon.get("/metrics").body)
-        self.assertIn("moved_to", self.daemon.said())
+        self.assertIn("moved_to", self.daemon.log_text())
 
     def test_a_run_that_takes_too_long_fails(self):
         self.start("--time-limit", 1)

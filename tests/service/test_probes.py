@@ -197,7 +197,7 @@ class Probes(ServiceTest):
 
     def test_refusals_are_logged(self):
         self.status(b"POST / HTTP/1.1\r\n" + HEAD + b"Transfer-Encoding: chunked\r\n\r\n0\r\n\r\n")
-        lines = [json.loads(line) for line in self.daemon.said().splitlines() if line.startswith("{")]
+        lines = [json.loads(line) for line in self.daemon.log_text().splitlines() if line.startswith("{")]
         self.assertIn(411, [line["status"] for line in lines if line["event"] == "refused"])
 
     def test_expect_continue(self):

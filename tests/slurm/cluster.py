@@ -1,4 +1,4 @@
-"""A Slurm of its own for a test: munged, slurmctld and several slurmd on loopback, without systemd or cgroups."""
+"""A private Slurm for one test: munged, slurmctld and several slurmd on loopback, without systemd or cgroups."""
 import os
 import pathlib
 import shutil

@@ -21,7 +21,7 @@ CASE = case(spacing=0.3, end=4.0)  # some two seconds a run
 OVER = ("successful", "failed")
 
 
-def books(directory):
+def digests(directory):
     """What a study says of itself, without what time it took."""
     study = json.loads((directory / "study.json").read_text())
     study["effort"].pop("wall_clock_s")
@@ -87,7 +87,7 @@ class StudyTest(SlurmTest):
             env={**self.cluster.environment, **environment}, stdout=subprocess.DEVNULL, stderr=self.log)
         self.addCleanup(self.process.kill)
 
-    def said(self):
+    def output(self):
         return (self.dir / "log").read_text()
 
     def ended(self):
@@ -96,16 +96,16 @@ class StudyTest(SlurmTest):
     def begun(self):
         """Waits until some realizations have ended and others run."""
         self.cluster.wait("the study to be under way", lambda: self.process.poll() is not None or (self.ended() > 1 and self.running()))
-        self.assertIsNone(self.process.poll(), self.said())
+        self.assertIsNone(self.process.poll(), self.output())
 
     def finishes(self, code=0, seconds=150):
         try:
-            self.assertEqual(self.process.wait(seconds), code, self.said())
+            self.assertEqual(self.process.wait(seconds), code, self.output())
         except subprocess.TimeoutExpired:
-            self.fail(f"the study does not end\n{self.said()}\n{self.squeue()}\n{self.cluster.logs()}")
+            self.fail(f"the study does not end\n{self.output()}\n{self.squeue()}\n{self.cluster.logs()}")
 
     def same_as_local(self):
-        self.assertEqual(books(self.dir / "study"), books(self.plain / "study"))
+        self.assertEqual(digests(self.dir / "study"), digests(self.plain / "study"))
         self.assertFalse((self.dir / "study/work").exists())
 
 
@@ -116,7 +116,7 @@ class Studies(StudyTest):
         self.start()
         self.finishes()
         self.same_as_local()
-        self.assertNotIn("trying", self.said())
+        self.assertNotIn("trying", self.output())
 
     def test_a_lost_node(self):
         self.start()
@@ -149,7 +149,7 @@ class Studies(StudyTest):
         self.cluster.run("scancel", "--partition=batch")
         self.finishes()
         self.same_as_local()
-        self.assertIn("lost by Slurm (CANCELLED)", self.said())
+        self.assertIn("lost by Slurm (CANCELLED)", self.output())
 
     def test_cancelled_again_and_again(self):
         """Who cancels often enough has their will: the realizations failed, and say why."""
@@ -166,13 +166,13 @@ class Studies(StudyTest):
         self.start()
         self.begun()
         self.cluster.stop_controller()
-        self.cluster.wait("the study to notice", lambda: "waiting for Slurm" in self.said())
+        self.cluster.wait("the study to notice", lambda: "waiting for Slurm" in self.output())
         time.sleep(5)
-        self.assertIsNone(self.process.poll(), self.said())
+        self.assertIsNone(self.process.poll(), self.output())
         self.cluster.start_controller()
         self.finishes()
         self.same_as_local()
-        self.assertIn("Slurm answers again", self.said())
+        self.assertIn("Slurm answers again", self.output())
 
     def test_killed_it_takes_over_what_runs_on(self):
         self.start()
@@ -184,7 +184,7 @@ class Studies(StudyTest):
         self.start()
         self.finishes()
         self.same_as_local()
-        self.assertNotIn("trying", self.said())  # two at the same run would get in each other's way
+        self.assertNotIn("trying", self.output())  # two at the same run would get in each other's way
         self.assertEqual({t.split()[1] for t in self.squeue("-tall", "-o%F_%K %T") if t.split()[0] in left}, {"COMPLETED"})
 
     def test_stopped_it_cancels_and_goes_on(self):
@@ -200,7 +200,7 @@ class Studies(StudyTest):
     def test_held(self):
         self.configure(sbatch_options=["--hold"])
         self.start()
-        self.cluster.wait("the study to say so", lambda: "0 failed, 8 running, waits in Slurm's queue: JobHeldUser" in self.said())
+        self.cluster.wait("the study to say so", lambda: "0 failed, 8 running, waits in Slurm's queue: JobHeldUser" in self.output())
         self.releases_until(lambda: self.process.poll() is not None)
         self.finishes()
         self.same_as_local()
@@ -211,21 +211,21 @@ class Studies(StudyTest):
         self.assertTrue(late.exists())
         self.start(LD_PRELOAD=str(late))
         self.finishes()
-        self.assertNotIn("LD_PRELOAD", self.said())  # the loader says so where it cannot
+        self.assertNotIn("LD_PRELOAD", self.output())  # the loader says so where it cannot
         self.same_as_local()
 
     def test_refused_by_slurm(self):
         self.configure(partition="nowhere")
         self.start()
         self.finishes(5)
-        self.assertRegex(self.said(), "Slurm takes no runs: sbatch: .*[Ii]nvalid partition")
+        self.assertRegex(self.output(), "Slurm takes no runs: sbatch: .*[Ii]nvalid partition")
 
     def test_a_bad_configuration(self):
         self.configure(poll_s="often", partition="a b", sbatch_options=["--wait", "qos"], node="n1")
         self.start()
         self.finishes(2)
         for fault in ("/poll_s is not a number", "/partition may hold", "--wait is set by Talus", "/sbatch_options/1", "/node is not a known key"):
-            self.assertIn(fault, self.said())
+            self.assertIn(fault, self.output())
 
 
 class Forgotten(StudyTest):
@@ -242,7 +242,7 @@ class Forgotten(StudyTest):
         self.start()
         self.finishes()
         self.same_as_local()
-        self.assertIn("lost by Slurm (forgotten)", self.said())
+        self.assertIn("lost by Slurm (forgotten)", self.output())
 
 
 class TimeLimit(StudyTest):
@@ -260,7 +260,7 @@ class TimeLimit(StudyTest):
         self.assertGreater(len(tasks), 2, f"no task was broken off by the limit: {tasks}")
         local = subprocess.run([*command, "--out", self.dir / "local", "--workers", "2"], capture_output=True, text=True, timeout=900)
         self.assertEqual(local.returncode, 0, local.stderr)
-        self.assertEqual(books(self.dir / "study"), books(self.dir / "local"))
+        self.assertEqual(digests(self.dir / "study"), digests(self.dir / "local"))
 
     def end_after(self, seconds):
         """When the slide must end for a run to take about so long on this machine."""
@@ -290,12 +290,12 @@ class Service(SlurmTest):
         try:
             info = self.daemon.wait_for(job, OVER, 150)
         except AssertionError as e:
-            self.fail(f"{e}\n{self.daemon.said()}\n{self.squeue()}\n{self.cluster.logs()}")
+            self.fail(f"{e}\n{self.daemon.log_text()}\n{self.squeue()}\n{self.cluster.logs()}")
         self.assertEqual(info["status"], "successful", info)
         return info
 
     def same_as_local(self, job):
-        self.assertEqual(books(self.dir / "data/jobs" / job), books(self.plain / "study"))
+        self.assertEqual(digests(self.dir / "data/jobs" / job), digests(self.plain / "study"))
         histogram = self.daemon.get(f"/jobs/{job}/results").json["histogram"]["value"]["histogram"]
         local = json.loads((self.plain / "study/study.json").read_text())["quantities"]["influence_zone_m"]["histogram"]
         self.assertEqual(histogram["counts"], local["counts"])

@@ -2,7 +2,7 @@
 
 `python3 paper_study.py WORK [N ...]` runs all of them up to N realizations each, in one pass per N; after an interruption the same command
 continues. `--spacing 0.1` does so for the studies at half the spacing, which show its effect on short correlation lengths. Finished realizations are
-kept in books/, a directory of tables for each study, from which any machine can continue.
+kept in records/, a directory of tables for each study, from which any machine can continue.
 """
 
 import argparse
@@ -45,49 +45,49 @@ def name(case, truncation):
     return f"case{case}-{truncation}"
 
 
-BOOKS = pathlib.Path(__file__).resolve().parent / "books"
-FINE_BOOKS = BOOKS / "fine"
+RECORDS = pathlib.Path(__file__).resolve().parent / "records"
+FINE_RECORDS = RECORDS / "fine"
 TABLES = ("plan.json", "case.resolved.json", "noise_floor.csv", "realizations.csv")  # what `talus stats` reads; the last one counts what is done
 
 
-def read_rows(book):
-    """Rows of its realizations.csv; none where there is no book yet."""
-    if not (book / "realizations.csv").exists():
+def read_rows(record):
+    """Rows of its realizations.csv; none where there is no record yet."""
+    if not (record / "realizations.csv").exists():
         return []
-    with open(book / "realizations.csv", newline="") as file:
+    with open(record / "realizations.csv", newline="") as file:
         return list(csv.DictReader(file))
 
 
-def advance(work, realizations, spacing=SPACING, books=BOOKS, chosen=tuple((t, c) for t in TRUNCATIONS for c in TABLE_4)):
+def advance(work, realizations, spacing=SPACING, records=RECORDS, chosen=tuple((t, c) for t in TRUNCATIONS for c in TABLE_4)):
     """Runs every study up to the given number of realizations. Realization i has the same draws in all cases."""
     for truncation, case in chosen:
-        extend(pathlib.Path(work) / "paper_study" / f"dx{spacing:g}", books / name(case, truncation), realizations, settings(case, truncation, spacing))
+        extend(pathlib.Path(work) / "paper_study" / f"dx{spacing:g}", records / name(case, truncation), realizations, settings(case, truncation, spacing))
         print(name(case, truncation), realizations, flush=True)
 
 
-def extend(work, book, realizations, chosen):
+def extend(work, record, realizations, chosen):
     """Runs the missing realizations and adds them to the record."""
-    rows = read_rows(book)
+    rows = read_rows(record)
     if len(rows) >= realizations:
         return
     if [int(row["index"]) for row in rows] != list(range(len(rows))):
-        raise SystemExit(f"{book} has gaps")
+        raise SystemExit(f"{record} has gaps")
     if rows:
         check_program(work, rows[0], chosen)
-    part, joined = work / f"{book.name}-from-{len(rows)}", work / f"{book.name}-joined"
+    part, joined = work / f"{record.name}-from-{len(rows)}", work / f"{record.name}-joined"
     talus_runs.study(talus_runs.CASES / "illustrative.json", part, realizations, chosen, first=len(rows))
     shutil.rmtree(joined, ignore_errors=True)
-    talus_runs.call(["stats", *([book] if rows else []), part, "--out", joined])
-    enter(joined, book)
+    talus_runs.call(["stats", *([record] if rows else []), part, "--out", joined])
+    enter(joined, record)
     shutil.rmtree(part), shutil.rmtree(joined)
 
 
-def enter(study, book):
+def enter(study, record):
     """Copies a study's tables; may be repeated after an interruption."""
-    book.mkdir(parents=True, exist_ok=True)
+    record.mkdir(parents=True, exist_ok=True)
     for table_name in TABLES:
-        shutil.copy(study / table_name, book / (table_name + ".new"))
-        (book / (table_name + ".new")).rename(book / table_name)
+        shutil.copy(study / table_name, record / (table_name + ".new"))
+        (record / (table_name + ".new")).rename(record / table_name)
 
 
 def check_program(work, row, chosen):
@@ -101,22 +101,22 @@ def check_program(work, row, chosen):
 
 def measure(work, coarse):
     """Reads the records that `advance` wrote; coarse ones are computed here."""
-    spacing, books = (0.8, pathlib.Path(work) / "books") if coarse else (SPACING, BOOKS)
+    spacing, records = (0.8, pathlib.Path(work) / "records") if coarse else (SPACING, RECORDS)
     if coarse:
-        advance(work, 20, spacing, books)
-    return {"spacing_m": spacing, "studies": counted(work, books), "fine": [] if coarse else counted(work, FINE_BOOKS)}
+        advance(work, 20, spacing, records)
+    return {"spacing_m": spacing, "studies": counted(work, records), "fine": [] if coarse else counted(work, FINE_RECORDS)}
 
 
-def counted(work, books):
-    """Summaries of all studies that have a book."""
+def counted(work, records):
+    """Summaries of all studies that have a record."""
     found = []
     for truncation in TRUNCATIONS:
         for case in TABLE_4:
-            book = books / name(case, truncation)
-            if book.exists():
-                where = pathlib.Path(work) / "paper_study" / f"{book.parent.name}-{book.name}-counted"
+            record = records / name(case, truncation)
+            if record.exists():
+                where = pathlib.Path(work) / "paper_study" / f"{record.parent.name}-{record.name}-counted"
                 shutil.rmtree(where, ignore_errors=True)
-                talus_runs.call(["stats", book, "--out", where])
+                talus_runs.call(["stats", record, "--out", where])
                 found.append(summary(case, truncation, where))
     return found
 
@@ -384,7 +384,7 @@ def main():
     chosen = options.parse_args()
     for target in chosen.realizations:
         if chosen.spacing == FINE:
-            advance(chosen.work, target, FINE, FINE_BOOKS, FINE_STUDIES)
+            advance(chosen.work, target, FINE, FINE_RECORDS, FINE_STUDIES)
         else:
             advance(chosen.work, target)
 

@@ -1,5 +1,5 @@
 // The same bits as an earlier program: short runs of every choice of the method (recorded_digests.json, made by
-// record_digests.py), and runs of the studies that the validation rests on (tests/validation/books).
+// record_digests.py), and runs of the studies that the validation rests on (tests/validation/records).
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -109,11 +109,11 @@ std::vector<std::string> row_of(const std::string& path, const std::string& inde
   return {};
 }
 
-/// One run of a study of tests/validation/books: its digest stands in the eleventh column of the study's table.
+/// One run of a study of tests/validation/records: its digest stands in the eleventh column of the study's table.
 void expect_the_digest_of_the_study(const std::string& study, const char* file, const char* row, RunIdentity identity) {
   if (!has_fused_multiply_add()) GTEST_SKIP() << "the digests are those of AVX2 and better";
   omp_set_num_threads(1);
-  const std::string directory = source + "/tests/validation/books/" + study;
+  const std::string directory = source + "/tests/validation/records/" + study;
   const Case c = load_case(directory + "/case.resolved.json").value;
   identity.seed = read_json(directory + "/plan.json").at("seed");
   Simulation simulation = simulation_of(c, identity);
