@@ -3,7 +3,7 @@
 //
 // Debian 12's cpp-httplib (0.11.4) takes chunked bodies beyond its limit, Content-Length together with chunked,
 // thousands of ranges, %0d%0a in header values (which it decodes), and any number of headers. So a request's bytes are
-// read and judged here, and the library is handed a head written anew: one request, a length that is true, and only the
+// read and judged here, and the library receives a rewritten header: one request, a correct length, and only the
 // headers that a handler looks at. No Range, no Transfer-Encoding and no Content-Type ever reach it.
 
 #include <optional>

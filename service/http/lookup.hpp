@@ -17,7 +17,7 @@ std::optional<std::int64_t> whole_number(const Incoming& request, const std::str
                                          std::int64_t most);
 std::optional<double> real_number(const Incoming& request, const std::string& name);
 
-/// Refuses parameters that nobody reads. @throws Refusal bad_request
+/// Rejects unknown parameters. @throws Refusal bad_request
 void only_parameters(const Incoming& request, std::initializer_list<const char*> known);
 
 /// The query of a request, as in "?a=b&c=d", with one parameter replaced; empty without parameters.

@@ -23,7 +23,7 @@ class Router {
     std::vector<std::string> captured;
     std::string allow;  ///< the methods of the path
   };
-  /// HEAD is answered by GET's handler. Path "*" is the server: it allows what any path does, and nobody handles it.
+  /// HEAD is answered by GET's handler. Path "*" is the server: it allows what any path does, and has no handler.
   Found find(const std::string& method, const std::string& path) const;
 
  private:

@@ -138,7 +138,7 @@ class Server::Implementation : public httplib::Server {
     const std::string any = R"([\s\S]*)";
     Get(any, answer), Post(any, answer), Put(any, answer), Patch(any, answer), Delete(any, answer),
         Options(any, answer);
-    // Methods that the library knows but gives nobody: TRACE, CONNECT.
+    // Methods that the library parses but does not dispatch: TRACE, CONNECT.
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       if (request.method != "TRACE" && request.method != "CONNECT" && request.method != "PRI")
         return HandlerResponse::Unhandled;

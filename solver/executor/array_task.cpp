@@ -41,7 +41,7 @@ class Signals {
   bool asked_to_stop_ = false;
 };
 
-/// Whether a run that was asked to stop did so before its end.
+/// Whether a run that was asked to stop stopped before it had finished.
 bool broke_off(const ProcessEnd& end) {
   return end.signal != 0 || end.exit_code == interrupted_exit || end.exit_code == 128 + SIGTERM;
 }

@@ -10,8 +10,8 @@
 
 namespace talus::executor {
 
-/// One run: a program that writes into a directory of its own, leaves checkpoint.h5 there (exit code 6) when it gets a
-/// SIGTERM, and goes on from it with `--resume`.
+/// One run: a program that writes into its own directory, leaves checkpoint.h5 there (exit code 6) when it gets a
+/// SIGTERM, and continues from it with `--resume`.
 struct Run {
   std::string name;   ///< differs from that of every other open run, and is the same after a restart of ours
   std::string group;  ///< runs of one group take about as long as each other
@@ -28,7 +28,7 @@ struct Ended {
   ProcessEnd end = {};
   bool resumed = false;    ///< it began from a checkpoint
   bool timed_out = false;  ///< killed, since it took longer than its limits.wall_seconds
-  bool taken = false;      ///< taken from its machine through no fault of its own; `end` says nothing
+  bool taken = false;      ///< preempted or lost with its node; not counted as an attempt, `end` is meaningless
   std::string why = {};    ///< one line, where the end is not the process's own
 };
 
@@ -48,9 +48,9 @@ class Executor {
   virtual void stop_all() = 0;
   /// Ends a run.
   virtual void kill(RunId id) = 0;
-  /// Why no run of this group is under way, one line; empty while one is, and where nobody knows.
+  /// Why no run of this group is in progress, one line; empty while one is, or if the reason is unknown.
   virtual std::string waits(const std::string& group) const = 0;
-  /// Runs go on when this process ends, and who starts a run of the same name again takes it over.
+  /// Runs continue when this process ends; a later process that starts a run of the same name adopts it.
   virtual bool survives_us() const = 0;
 };
 

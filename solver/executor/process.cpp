@@ -62,7 +62,7 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return all;
 }
 
-/// Empties the file, here first, so that a full disk is not taken for a missing program.
+/// Truncates the file first, so that a full disk is not mistaken for a missing program.
 void create(const fs::path& path) {
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) fail("create", path, errno);

@@ -23,12 +23,12 @@ struct Limits {
   std::uint64_t memory_bytes = 0;  ///< address space
   std::uint64_t cpu_seconds = 0;
   std::uint64_t file_bytes = 0;    ///< of each file it writes
-  std::uint64_t wall_seconds = 0;  ///< kept by who waits for it, not by Process
+  std::uint64_t wall_seconds = 0;  ///< enforced by the caller, not by Process
   bool core_dumps = true;
 };
 
 struct Command {
-  std::vector<std::string> arguments;  ///< the program first; without a slash it is looked for in PATH
+  std::vector<std::string> arguments;  ///< the program first; without a slash it is searched in PATH
   std::optional<std::vector<std::string>> environment = {};  ///< "NAME=value"; unset: ours
   Limits limits = {};
   int niceness = 0;
@@ -40,7 +40,7 @@ struct ProcessEnd {
   int signal = 0;     ///< that killed it; 0: it left by itself
 };
 
-/// A running child: in a process group of its own, so that Ctrl-C at the terminal reaches only its parent; stdin empty,
+/// A running child: in its own process group, so that Ctrl-C at the terminal reaches only its parent; stdin empty,
 /// stdout and stderr in files, which may be one; default signal handling. Killed (SIGKILL) with its group and reaped
 /// when the object goes while it still runs.
 class Process {

@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t pilots = 8;  ///< runs at a time while nobody knows how long they take
-constexpr int misses = 2;          ///< looks at the queue after which a task is gone
+constexpr std::size_t pilots = 8;  ///< runs at a time while their duration is unknown
+constexpr int misses = 2;          ///< polls without the task after which it is gone
 
 constexpr const char* never_submitted = "never submitted";
 
@@ -146,7 +146,7 @@ void SlurmExecutor::take_in(Batch& batch, RunPlace place) {
     const RunStatus status = batch.directory.status(place);
     if (status.end.exit_code == 0 && status.end.signal == 0) times_.ended(entry.run.group, status.seconds);
     end(entry, {.end = status.end, .resumed = status.resumed, .timed_out = status.timed_out, .why = status.why});
-  } catch (const BatchError& e) {  // looked at again; if it stays so, the task is gone one day, and the run lost
+  } catch (const BatchError& e) {  // read again; if it stays so, the task will be gone and the run lost
     if (!std::exchange(entry.told, true)) note_(e.what());
   }
 }

@@ -2,9 +2,9 @@
 // Runs as array jobs of Slurm. We write no scheduler: Slurm decides where and when, starts again what a lost or
 // preempted machine held, and ends what takes too long.
 //
-// Runs wait here until the next look, then go out as one array job, each task with a chunk of them. Their ends come
+// Runs wait here until the next poll, then go out as one array job, each task with a chunk of them. Their ends come
 // back as status files on the shared directory; the queue (one squeue for all) is asked only which tasks are still to
-// be waited for. A run whose task is gone without a status has been lost, and who started it hears so.
+// be waited for. A run whose task is gone without a status is lost and reported as such.
 
 #include <chrono>
 #include <deque>
@@ -51,7 +51,7 @@ class SlurmExecutor final : public Executor {
   };
   struct Task {
     std::vector<Entry> entries;
-    int missed = 0;  ///< looks at the queue that did not find it
+    int missed = 0;  ///< consecutive polls of the queue that did not find it
     std::optional<Steady::time_point> running_since = {};
     std::string reason = {};  ///< Slurm's word for why it waits
     bool over = false;        ///< nothing more is to come from it
@@ -74,7 +74,7 @@ class SlurmExecutor final : public Executor {
     RunPlace run;
   };
 
-  // slurm.cpp: who starts runs, and the round of looks
+  // slurm.cpp: starting runs, and the poll cycle
   void look();
   void collect(Batch& batch);
   void take_in(Batch& batch, RunPlace place);
@@ -119,11 +119,11 @@ class SlurmExecutor final : public Executor {
   RunTimes times_;
   std::vector<Ended> ended_;
   double load_ = 0.0;        ///< array tasks that are open, or that the waiting runs will need
-  std::size_t unknown_ = 0;  ///< runs of which nobody knows how long they take
+  std::size_t unknown_ = 0;  ///< runs of unknown duration
 
   std::optional<Call> sbatch_, squeue_, scancel_;
   Batch* submitting_ = nullptr;      ///< what sbatch_ is about
-  std::optional<SlurmQueue> queue_;  ///< not looked at yet
+  std::optional<SlurmQueue> queue_;  ///< empty before the first poll
   Steady::time_point queue_begun_{}, next_look_{}, next_queue_{}, next_submit_{}, next_cancel_{};
   int refusals_ = 0;             ///< of sbatch, one after the other
   bool answered_since_ = false;  ///< squeue worked since the first of them

@@ -5,7 +5,7 @@
 //   I.json       the runs of array task I, one after the other
 //   I-P.status   how run P of it ended
 //   I-P.kill     run P is not wanted any more
-//   I.log        what the task said
+//   I.log        stdout and stderr of the task
 //   job          the number of the array job
 //
 // Every file appears whole, by rename. Who removes the directory takes the runs away from tasks that begin late.
@@ -20,7 +20,7 @@
 
 namespace talus::executor {
 
-/// A file of a batch cannot be read, or says what it cannot say; the message names it.
+/// A file of a batch is unreadable or malformed; the message names it.
 struct BatchError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

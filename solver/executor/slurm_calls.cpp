@@ -1,4 +1,4 @@
-// sbatch, squeue and scancel: called in the background, their answers looked over.
+// sbatch, squeue and scancel: called in the background, their output checked.
 
 #include <signal.h>
 

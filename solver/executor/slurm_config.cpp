@@ -17,7 +17,7 @@ constexpr std::array ours{
     "-J",        "-o",       "--output", "-W",     "--open-mode",     "-n", "--ntasks", "-N", "--nodes",  "--parsable",
     "--requeue", "--signal", "--wait",   "--wrap", "--no-requeue"};
 
-/// The members of one object, each looked at once; what is left over is a fault.
+/// The members of one object, each read once; a member left over is a fault.
 class Reader {
  public:
   Reader(Json document, std::string place) : document_(std::move(document)), place_(std::move(place)) {

@@ -1,5 +1,5 @@
 #pragma once
-// What Slurm's programs answer, looked over before it is believed.
+// Checked readers of the output of Slurm's programs.
 
 #include <cstdint>
 #include <map>
@@ -26,7 +26,7 @@ struct QueuedTask {
 /// The whole queue at one moment.
 class SlurmQueue {
  public:
-  /// @param json  what `squeue --json` said, of Slurm 22.05 or newer
+  /// @param json  output of `squeue --json` of Slurm 22.05 or newer
   /// @throws SlurmAnswerError naming the place
   explicit SlurmQueue(const std::string& json);
 

@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds patience{30};  ///< within which who goes on starts its runs again
+constexpr std::chrono::seconds patience{30};  ///< time in which a continuing study must adopt its runs
 
 }  // namespace
 
@@ -56,7 +56,7 @@ bool SlurmExecutor::take_over(const Run& run, RunId id) {
   return true;
 }
 
-/// Runs that nobody has started again by now are of no use any more.
+/// Runs that no study has adopted by now are dropped.
 void SlurmExecutor::drop_unclaimed() {
   if (unclaimed_.empty() || Steady::now() - recovered_ < patience || !has_room()) return;
   for (const auto& [name, place] : unclaimed_) {

@@ -14,7 +14,7 @@
 
 namespace talus {
 
-/// Which run a checkpoint belongs to: only the same run may go on from it.
+/// Which run a checkpoint belongs to: only the same run may continue from it.
 struct CheckpointHeader {
   std::string talus_version;  ///< another version may compute other bits
   std::string case_hash;      ///< LoadedCase::hash

@@ -29,7 +29,7 @@ std::string read_file(const std::filesystem::path& path, std::size_t max_bytes);
 /// directory is not empty, and that is waited for.
 /// @throws IoError
 void remove_directory(const std::filesystem::path& path);
-/// The same at once; what a network file system does not let go yet stays, for who removes the directory around it.
+/// The same at once; what a network file system still holds stays, until the directory around it is removed.
 void remove_what_goes(const std::filesystem::path& path);
 
 /// What a directory of results is for.
@@ -55,7 +55,7 @@ std::optional<OutputMarker> find_output_marker(const std::filesystem::path& dire
 class OutputDirectory {
  public:
   /// @param case_hash  LoadedCase::hash
-  /// @param resume     accept a finished directory, and go on with an unfinished one
+  /// @param resume     accept a finished directory, and continue an unfinished one
   /// @throws IoError naming the directory: it holds files that are not ours, another kind or another case, a finished
   /// run without `resume`, is
   ///         in use by another process, or cannot be created or written

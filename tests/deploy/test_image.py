@@ -30,7 +30,7 @@ def documented(verb):
 
 
 def network_of_our_own():
-    """What listens on 8080 here is nobody else's."""
+    """Port 8080 is used by this container only."""
     if ctypes.CDLL(None, use_errno=True).unshare(CLONE_NEWNET) != 0:
         raise OSError(ctypes.get_errno(), "unshare")
     subprocess.run(["ip", "link", "set", "lo", "up"], check=True)

@@ -76,7 +76,7 @@ class BadDays(ServiceTest):
         )
 
     def test_a_directory_that_cannot_be_removed_yet(self):
-        """As on a network file system. It is tried again now and then, the rest goes on, and the log is not filled."""
+        """As on a network file system. It is retried at intervals, the rest continues, and the log does not fill up."""
         self.start()
         job = self.daemon.submit(study(1))
         self.daemon.wait_for(job)

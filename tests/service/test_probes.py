@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Requests that nobody should send, and clients that are slow."""
+"""Malformed and malicious requests, and slow clients."""
 
 import concurrent.futures
 import datetime

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# report.sh [WORK] [options of report.py]: builds, runs every experiment in full and writes REPORT.md. Takes hours; stopped, the same command goes on.
+# report.sh [WORK] [options of report.py]: builds, runs every experiment in full and writes REPORT.md. Takes hours; after an interruption the same command continues.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 deploy/install-packages.sh build test

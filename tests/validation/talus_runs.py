@@ -38,7 +38,7 @@ def call(arguments):
 
 
 def run(case, directory, settings=None, threads=None, extra=()):
-    """result.json of one run as a dictionary; a finished one is read, an interrupted one goes on."""
+    """result.json of one run as a dictionary; a finished one is read, an interrupted one is continued."""
     directory = pathlib.Path(directory)
     arguments = ["run", case_file(case, directory), "--out", directory, "--json", *override(settings or {}), *extra]
     if threads:

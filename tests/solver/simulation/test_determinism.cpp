@@ -53,7 +53,7 @@ TEST(Determinism, ARestoredRunGoesOnWithTheSameBits) {
 }
 
 TEST(Determinism, ListsOfNeighboursAreRenewedBeforeTheyMissAny) {
-  // A restored run makes its lists anew; were those of the other worn out, the bits would part.
+  // A restored run rebuilds its lists; if those of the other were due for a rebuild, the bits would differ.
   Model m = collapse(0.05);
   m.walls.slip = WallSlip::free_slip;
   m.materials[0].phi = 0.05;

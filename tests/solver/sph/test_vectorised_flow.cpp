@@ -146,7 +146,7 @@ TEST(VectorisedFlow, FollowsParticlesThatChangePlaces) {
     });
   };
   for_each_rate(before, expect_moved), for_each_derived(before, expect_moved);
-  // Rates follow a new order as well; the derived values are written anew before anyone reads them.
+  // Rates follow a new order as well; the derived values are rewritten before they are read.
   std::vector<std::uint32_t> order(soil.size());
   std::iota(order.rbegin(), order.rend(), 0u);
   std::vector<double> scratch;
