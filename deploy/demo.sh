@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # demo.sh: installs what is missing, builds, runs a small study of the illustrative slope and shows its histogram; then
 # the same over HTTP: starts talusd on a free port of this machine, submits the study, prints the histogram as JSON.
-# About two minutes on two cores; the first time, downloading packages and building come on top.
-#   OUT=DIR           where the study goes (default out/demo beside the sources)
-#   REALIZATIONS=N    how many runs (default 16)
-#   BIN=DIR           where talus and talusd are already; nothing is installed or built
+# About two minutes on two cores, plus downloading packages and building the first time.
+#   OUT=DIR           directory of the study (default out/demo in the sources)
+#   REALIZATIONS=N    number of realizations (default 16)
+#   BIN=DIR           directory of installed talus and talusd; nothing is installed or built
 #   CASE=FILE         another case
-#   TALUS_SERVER=URL  a talusd that runs already (its token in TALUS_TOKEN): only the part over HTTP
+#   TALUS_SERVER=URL  a running talusd (its token in TALUS_TOKEN): only the part over HTTP
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

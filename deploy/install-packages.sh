@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# install-packages.sh [build] [test] [tsan] [container]: Debian packages that Talus needs, those that are not there yet.
+# install-packages.sh [build] [test] [tsan] [container]: installs the Debian packages that Talus needs and that are missing.
 # Needs root or sudo only if something is missing.
 set -euo pipefail
 

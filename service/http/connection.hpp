@@ -1,5 +1,5 @@
 #pragma once
-// One client's socket: whole requests in, bytes out, both within their time.
+// The socket of one client: complete requests in, bytes out, both with a time limit. Used by one thread at a time.
 
 #include <chrono>
 #include <functional>
@@ -11,12 +11,12 @@
 
 namespace talus::service {
 
-/// A request that has come whole and been judged good.
+/// A complete, valid request.
 struct WholeRequest {
   Head head;
   std::string body;
 };
-/// A request that has been judged bad; what comes after it cannot be told apart, so the connection ends.
+/// An invalid request; where the next one begins is unknown, so the connection is closed.
 struct BadRequest {
   int status;
   std::string why;
@@ -26,18 +26,18 @@ struct Closed {};
 struct Timing {
   std::chrono::milliseconds idle{5000};      ///< between two requests
   std::chrono::milliseconds request{15000};  ///< from the first byte of a request to its last
-  std::chrono::milliseconds write{20000};    ///< for a client to take what we send
+  std::chrono::milliseconds write{20000};    ///< for the client to accept the response
 };
 
 class Connection {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// @param stopping  asked now and then: whether the server is going down
+  /// @param stopping  polled: whether the server is shutting down
   Connection(int fd, const GuardLimits& limits, const Timing& timing, std::function<bool()> stopping);
 
   std::variant<WholeRequest, BadRequest, Closed> next();
-  /// Writes all of it, or fails: the other side is gone, too slow, or we are stopping.
+  /// Writes all bytes. @return false if the client is gone or too slow, or the server is stopping
   bool write(const char* data, std::size_t size);
   bool write(const std::string& text) { return write(text.data(), text.size()); }
   /// Closes the sending side and keeps reading for a moment, so that the client receives the last response.
@@ -53,7 +53,7 @@ class Connection {
   const GuardLimits& limits_;
   Timing timing_;
   std::function<bool()> stopping_;
-  std::string buffer_;  ///< received, not yet handed out
+  std::string buffer_;  ///< received, not yet returned
 };
 
 }  // namespace talus::service

@@ -1,5 +1,5 @@
 #pragma once
-// The documents that come with the program: schemas/openapi.json and schemas/processes/*.json, compiled in.
+// Documents compiled into the program: schemas/openapi.json and schemas/processes/*.json.
 
 #include <string>
 #include <utility>

@@ -1,11 +1,11 @@
 #pragma once
-// The process that gives its inputs back.
+// The process echo, which returns its inputs.
 
 #include "support/json.hpp"
 
 namespace talus::service {
 
-/// The inputs without wrappings. @throws Refusal with everything that is wrong
+/// The inputs as plain values. @throws Refusal with every fault
 Json read_echo_inputs(const Json& inputs);
 
 /// The outputs named.

@@ -2,8 +2,8 @@
 // Checks a request before the HTTP library sees any of it.
 //
 // Debian 12's cpp-httplib (0.11.4) takes chunked bodies beyond its limit, Content-Length together with chunked,
-// thousands of ranges, %0d%0a in header values (which it decodes), and any number of headers. So a request's bytes are
-// read and judged here, and the library receives a rewritten header: one request, a correct length, and only the
+// thousands of ranges, %0d%0a in header values (which it decodes), and any number of headers. So the bytes of a request
+// are read and checked here, and the library receives a rewritten header: one request, a correct length, and only the
 // headers that a handler looks at. No Range, no Transfer-Encoding and no Content-Type ever reach it.
 
 #include <optional>
@@ -19,12 +19,12 @@ struct GuardLimits {
   std::size_t headers = 64;
   std::size_t target_bytes = 2048;
   std::size_t body_bytes = std::size_t{4} << 20;
-  bool loopback_names_only = false;  ///< without tokens, a page in a browser must not reach us by another name
+  bool loopback_names_only = false;  ///< without tokens, a web page must not reach the service by another host name
 };
 
-/// A head that has been judged.
+/// Verdict on a request header.
 struct Head {
-  int status = 0;        ///< 0: good; else the status to refuse with
+  int status = 0;        ///< 0: valid; else the HTTP status of the refusal
   std::string why = {};  ///< one line
   std::string method = {};
   std::size_t body = 0;  ///< Content-Length
@@ -33,13 +33,13 @@ struct Head {
   std::string rewritten = {};  ///< for the library, with the empty line
 };
 
-/// The name under which the client's Content-Type is handed on: the library would act on the real one.
+/// Header that carries the client's Content-Type: the library would act on the real one.
 inline constexpr const char* body_type_header = "X-Body-Type";
 
-/// Where the head ends (after the empty line); nothing if it has not come whole.
+/// End of the header (after the empty line); nothing if it is incomplete.
 std::optional<std::size_t> head_end(std::string_view bytes);
 
-/// Judges a whole head.
+/// Checks a complete header.
 Head judge(std::string_view head, const GuardLimits& limits);
 
 }  // namespace talus::service

@@ -1,11 +1,11 @@
 #pragma once
-// What many handlers begin with.
+// Lookups and checks shared by handlers.
 
 #include "http/service.hpp"
 
 namespace talus::service {
 
-/// The job named in the path, if it is the caller's; other people's do not exist.
+/// The job named in the path, if it belongs to the caller; jobs of others do not exist.
 /// @throws Refusal no_such_job
 Job job_of(const Exchange& exchange, Service& service);
 
@@ -26,14 +26,14 @@ std::string query_text(const Incoming& request, const std::optional<std::pair<st
 /// "a,b" as its parts.
 std::vector<std::string> comma_list(const std::string& text);
 
-/// What the client must be told again for a request with this Idempotency-Key, if it has been made before.
-/// @throws Refusal unprocessable when it was another request
+/// The stored answer to an earlier request with this Idempotency-Key, if any.
+/// @throws Refusal unprocessable if that request was different
 std::optional<Answer> told_before(const Exchange& exchange, Service& service);
 
-/// Makes what is kept of an answer under the Idempotency-Key; empty where there is no key.
+/// What to store of an answer under the Idempotency-Key; empty without a key.
 Store::Answer keeping(const Exchange& exchange, int status, bool with_location);
 
-/// The answer to a change: as kept, or made now.
+/// The answer to a change: the stored one, or a new one.
 Answer changed(const Exchange& exchange, const Job& job, int status, bool with_location);
 
 }  // namespace talus::service

@@ -1,5 +1,5 @@
 #pragma once
-// A request as the handlers see it, and their answer; neither knows the HTTP library.
+// Request and answer as the handlers see them, independent of the HTTP library.
 
 #include <functional>
 #include <map>
@@ -16,7 +16,7 @@ enum class Role { none, read, submit };
 struct Incoming {
   std::string method, path;
   std::multimap<std::string, std::string> query;
-  std::map<std::string, std::string> headers;  ///< names in small letters
+  std::map<std::string, std::string> headers;  ///< names in lower case
   std::string body;
 
   std::string header(const std::string& name) const {
@@ -29,7 +29,7 @@ struct Incoming {
   }
 };
 
-/// Writes one piece of a stream; false: the other side has gone, or we are stopping.
+/// Writes one piece of a stream. @return false if the client is gone or the server is stopping
 using Sink = std::function<bool(const std::string&)>;
 
 inline constexpr const char* event_stream = "text/event-stream";
@@ -42,10 +42,10 @@ struct Answer {
   std::function<void(const Sink&)> stream = {};  ///< instead of a body
 };
 
-/// One request on its way: who asks, and what the path holds.
+/// A request being handled: caller and captured parts of the path.
 struct Exchange {
   const Incoming& request;
-  std::vector<std::string> captured = {};  ///< what stands for the {} of the route
+  std::vector<std::string> captured = {};  ///< path segments that match the {} of the route
   std::string subject = "local";
   Role role = Role::submit;
   std::string base = {};  ///< "http://127.0.0.1:8080": before the path of absolute links

@@ -1,5 +1,5 @@
 #pragma once
-// RFC 9457 problem documents: from every reason to refuse to a status, in one table.
+// RFC 9457 problem documents: one table from reason of refusal to status.
 
 #include "http/message.hpp"
 #include "support/refusal.hpp"
@@ -10,10 +10,10 @@ namespace talus::service {
 /// @param accept  the client's Accept header: problem+json only for clients that ask for it
 Answer problem(const Refusal& refusal, const std::string& accept);
 
-/// The answer to any exception; what it was is told only where a client can do something about it.
+/// The answer to any exception; details are given only where a client can act on them.
 Answer problem(std::exception_ptr thrown, const std::string& accept);
 
-/// The same by status, for what the HTTP library finds wrong itself.
+/// The same by status, for errors detected by the HTTP library.
 Answer problem(int status, const std::string& accept);
 
 const char* status_text(int status);

@@ -1,5 +1,5 @@
 #pragma once
-// Which handler a request belongs to.
+// Maps method and path of a request to a handler.
 
 #include <functional>
 #include <string>
@@ -14,14 +14,14 @@ using Handler = std::function<Answer(Exchange&)>;
 class Router {
  public:
   /// @param pattern  "/jobs/{}/results": {} stands for one segment
-  /// @param role     that the bearer must have at least
+  /// @param role     minimum role of the token
   void add(const std::string& method, const std::string& pattern, Role role, Handler handler);
 
   struct Found {
     const Handler* handler = nullptr;  ///< none: no such path, or, with `allow`, not this method
     Role role = Role::none;
     std::vector<std::string> captured;
-    std::string allow;  ///< the methods of the path
+    std::string allow;  ///< methods allowed on the path
   };
   /// HEAD is answered by GET's handler. Path "*" is the server: it allows what any path does, and has no handler.
   Found find(const std::string& method, const std::string& path) const;

@@ -1,5 +1,5 @@
 #pragma once
-// cpp-httplib with our guard in front: it parses, routes nothing, writes answers.
+// cpp-httplib behind the guard: it parses requests and writes answers, but routes nothing.
 
 #include <functional>
 #include <memory>
@@ -18,12 +18,12 @@ struct ServerSettings {
 
 class Server {
  public:
-  /// @param handle  called for every good request, by many threads at once; throws nothing
+  /// @param handle  called for every valid request, concurrently from many threads; must not throw
   Server(ServerSettings settings, std::function<Answer(const Incoming&)> handle);
   ~Server();
 
   /// @param port  0: any free one
-  /// @return the port; 0 where the address cannot be had
+  /// @return the port; 0 if the address cannot be bound
   int bind(const std::string& address, int port);
   /// Serves until stop() is called.
   void serve();

@@ -1,5 +1,5 @@
 #pragma once
-// What the handlers work with, and which groups of them there are.
+// Shared state of the handlers (thread-safe), and the groups of routes.
 
 #include <atomic>
 #include <functional>
@@ -18,7 +18,7 @@ struct Service {
   Changes& changes;
   std::function<bool()> stopping;
   std::atomic<int> streams{0};
-  std::atomic<std::int64_t> requests{0}, failures{0};  ///< answered at all; with 5xx
+  std::atomic<std::int64_t> requests{0}, failures{0};  ///< all answered requests; those with 5xx
 };
 
 void add_discovery_routes(Router& router);                      ///< /, /conformance, /api, /processes
@@ -29,7 +29,7 @@ void add_event_routes(Router& router, Service& service);        ///< /jobs/{}/ev
 void add_operation_routes(Router& router, Service& service);    ///< /healthz, /readyz, /metrics
 void add_umbridge_routes(Router& router, Service& service);     ///< /Info, /Evaluate, ...
 
-/// The whole way of a request: token, route, handler, problem, ETag, log line.
+/// All stages of a request: token, route, handler, problem, ETag, log line.
 Answer answer(const Incoming& request, const Router& router, Service& service, const Tokens& tokens);
 
 }  // namespace talus::service

@@ -1,5 +1,5 @@
 #pragma once
-// Who may do what.
+// Bearer tokens and their roles.
 
 #include <filesystem>
 #include <optional>
@@ -10,13 +10,14 @@
 
 namespace talus::service {
 
-/// Who a token stands for.
+/// Holder of a token.
 struct Bearer {
   std::string subject;  ///< owns jobs
   Role role = Role::read;
 };
 
-/// The tokens file: a line "ROLE SUBJECT SHA256-OF-THE-TOKEN" each, # for remarks. The tokens themselves are nowhere.
+/// The tokens file: a line "ROLE SUBJECT SHA256-OF-THE-TOKEN" each, # for remarks. The tokens themselves are not
+/// stored.
 class Tokens {
  public:
   Tokens() = default;
