@@ -1,5 +1,5 @@
 #pragma once
-// Where runs of the solver are executed: here, or by Slurm. Who has runs to execute sees this interface alone.
+// Execution of solver runs on this machine or by Slurm. `talus study` and talusd know only this interface.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace talus::executor {
 /// One run: a program that writes into its own directory, leaves checkpoint.h5 there (exit code 6) when it gets a
 /// SIGTERM, and continues from it with `--resume`.
 struct Run {
-  std::string name;   ///< differs from that of every other open run, and is the same after a restart of ours
+  std::string name;   ///< unique among open runs, and unchanged after a restart of this process
   std::string group;  ///< runs of one group take about as long as each other
   Command command;    ///< paths are absolute
   std::filesystem::path directory;
@@ -29,22 +29,22 @@ struct Ended {
   bool resumed = false;    ///< it began from a checkpoint
   bool timed_out = false;  ///< killed, since it took longer than its limits.wall_seconds
   bool taken = false;      ///< preempted or lost with its node; not counted as an attempt, `end` is meaningless
-  std::string why = {};    ///< one line, where the end is not the process's own
+  std::string why = {};    ///< reason in one line, if the process did not end by itself
 };
 
-/// To be used by one thread.
+/// Not thread-safe: all calls come from one thread.
 class Executor {
  public:
   virtual ~Executor() = default;
-  /// Whether it takes another run now.
+  /// Whether another run can be started now.
   virtual bool has_room() const = 0;
-  /// Takes a run, from which something may be left in its directory. Its end is told by poll(), once.
+  /// Starts a run; its directory may contain the remains of an earlier attempt. poll() reports its end exactly once.
   /// @throws ProcessError
   virtual RunId start(const Run& run) = 0;
-  /// What has ended since the last call; never waits.
+  /// The runs that ended since the last call; never blocks.
   /// @throws ProcessError when runs cannot be executed at all; a later call tries again
   virtual std::vector<Ended> poll() = 0;
-  /// Asks all runs to checkpoint and end.
+  /// Asks all runs to write a checkpoint and end.
   virtual void stop_all() = 0;
   /// Ends a run.
   virtual void kill(RunId id) = 0;

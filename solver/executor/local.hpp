@@ -8,7 +8,7 @@
 
 namespace talus::executor {
 
-/// All runs are killed when it goes.
+/// All runs are killed by the destructor.
 class LocalExecutor final : public Executor {
  public:
   /// @param places  runs at a time

@@ -1,6 +1,6 @@
 #pragma once
-// Runs as array jobs of Slurm. We write no scheduler: Slurm decides where and when, starts again what a lost or
-// preempted machine held, and ends what takes too long.
+// Runs as array jobs of Slurm. Scheduling is left to Slurm: it decides where and when, restarts tasks of lost or
+// preempted nodes, and ends tasks at their time limit.
 //
 // Runs wait here until the next poll, then go out as one array job, each task with a chunk of them. Their ends come
 // back as status files on the shared directory; the queue (one squeue for all) is asked only which tasks are still to
@@ -45,7 +45,7 @@ class SlurmExecutor final : public Executor {
 
   struct Entry {
     Run run;
-    RunId id = 0;  ///< 0: of an earlier process of ours, and not asked for since
+    RunId id = 0;  ///< 0: of an earlier process, not adopted yet
     bool ended = false, killed = false;
     bool told = false;  ///< that its status cannot be read
   };
@@ -54,7 +54,7 @@ class SlurmExecutor final : public Executor {
     int missed = 0;  ///< consecutive polls of the queue that did not find it
     std::optional<Steady::time_point> running_since = {};
     std::string reason = {};  ///< Slurm's word for why it waits
-    bool over = false;        ///< nothing more is to come from it
+    bool over = false;        ///< it will write no more
     bool unwanted = false;
   };
   struct Batch {

@@ -1,5 +1,5 @@
 #pragma once
-// Figures of a finished study or run, from its files alone.
+// Figures of a finished study or run, from its files alone. Thread-safe for different directories.
 
 #include <filesystem>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// Checkpoints: a State on disk, whole and undamaged or refused.
+// Checkpoints: a State on disk, read back complete and undamaged or refused. Not thread-safe (HDF5).
 //
 // A file begins with a block of 512 bytes of text (what it is, its length, the checksum of what follows), then comes
 // HDF5: it is checked before HDF5 sees it, and h5dump and h5py read it all the same, since HDF5 lets others use the

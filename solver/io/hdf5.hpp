@@ -1,6 +1,6 @@
 #pragma once
-// The little of HDF5 that Talus needs, with owners for its identifiers and IoError for its error codes. API of 1.10 and
-// of 1.14.
+// The part of HDF5 that Talus needs, with owners for its identifiers and IoError for its error codes. API of 1.10 and
+// of 1.14. Not thread-safe: the library must be called from one thread at a time.
 
 #include <hdf5.h>
 
@@ -18,7 +18,7 @@ namespace talus::hdf5 {
 /// Throws IoError "<what>: <HDF5's own reason>".
 [[noreturn]] void fail(const std::string& what);
 
-/// Owns an identifier and closes it when it goes.
+/// Owns an identifier and closes it when destroyed.
 class Id {
  public:
   using Close = herr_t (*)(hid_t);
@@ -46,7 +46,7 @@ class Id {
   Close close_ = nullptr;
 };
 
-/// Files carry no times of their own, so that the same content gives the same bytes, and take no locks (OutputDirectory
+/// Files carry no time stamps, so that the same content gives the same bytes, and take no locks (OutputDirectory
 /// has one; and a viewer may look at a file while it grows). HDF5 prints nothing.
 /// @{
 Id create_in_memory();
@@ -56,7 +56,7 @@ enum class Access { read, read_write };
 Id open_file(const std::filesystem::path& path, Access access);
 /// The bytes of an open file, as they would lie on the disk.
 std::string image(const Id& file);
-/// Hands everything to the operating system. @throws IoError
+/// Flushes everything to the operating system. @throws IoError
 void flush(const Id& file);
 /// @}
 

@@ -3,9 +3,9 @@
 // stored once; https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html#vtkhdf-file-format. Beside it an
 // XDMF file for ParaView 5.11 that points into the same arrays.
 //
-// Arrays at every step (float32): Points, velocity, displacement [m/s, m; 3 components], density [kg/m3], pressure
-// [Pa], friction_angle_deg, shear_rate [1/s], stress [Pa; XX YY ZZ XY YZ XZ, positive in tension]. Stored once (int32):
-// is_wall, id.
+// Arrays at every step of n particles (float32): Points [m], velocity [m/s], displacement [m], each (n, 3); stress (n,
+// 6) [Pa; XX YY ZZ XY YZ XZ, positive in tension]; density [kg/m3], pressure [Pa], friction_angle_deg, shear_rate
+// [1/s], each (n). Stored once (int32): is_wall, id, each (n). Not thread-safe (HDF5).
 
 #include <cstddef>
 #include <filesystem>
@@ -19,8 +19,8 @@
 
 namespace talus {
 
-/// Writes the snapshots of one run, one after the other. A step counts once its number stands in NSteps, which is
-/// written last: whoever reads the file while it grows, or after the process was killed, sees whole steps. Disk space
+/// Writes the snapshots of one run in order. A step is valid once it is counted in NSteps, which is written last: a
+/// reader of the growing file, or of one left by a killed process, sees complete steps. Disk space
 /// for a step is reserved before it is written, so that a full disk leaves the earlier steps readable.
 class SnapshotWriter {
  public:
@@ -28,13 +28,12 @@ class SnapshotWriter {
   /// @throws IoError naming the path; std::invalid_argument when the frame's arrays differ in length or are empty
   SnapshotWriter(std::filesystem::path path, const Frame& first);
 
-  /// Goes on with a file that an earlier process left: steps later than `time` [s] are dropped, so that the file ends
-  /// as that of a run that was never interrupted.
+  /// Continues a file of an earlier process: steps later than `time` [s] are dropped, so that the file becomes
+  /// identical to that of an uninterrupted run.
   /// @throws IoError naming the path: missing, damaged, or not such a file
   static SnapshotWriter resume(std::filesystem::path path, double time);
 
-  /// Appends a step and hands it to the disk. A frame of the same time as the last one is already there and is left
-  /// out.
+  /// Appends a step and flushes it. A frame with the time of the last one is already present and is skipped.
   /// @throws IoError naming the path; std::invalid_argument when the frame is earlier than the last one or has other
   /// particles
   void append(const Frame& frame);
@@ -59,7 +58,7 @@ std::vector<double> snapshot_times(const std::filesystem::path& path);
 /// @throws IoError naming the path, also when it has no step `index`
 Frame read_frame(const std::filesystem::path& path, std::size_t index);
 
-/// Numbers with a name, one for each point.
+/// A named array with one value per point.
 struct NamedArray {
   std::string name;  ///< with its unit: "friction_angle_deg"
   std::span<const double> values;
