@@ -125,7 +125,7 @@ def section(numbers, directory):
     axes.plot(numbers["times"], numbers["lubrication_m"]["160"], "k", label="lubrication theory")
     for level in numbers["slow"]:
         axes.plot(numbers["times"], level["front_m"], "o", label=f"dx = {level['spacing_m']:g} m")
-    axes.set(xlabel="t [s]", ylabel="front [m]")
+    axes.set(xlabel="time t [s]", ylabel="front, from the middle of the block [m]")
     axes.legend()
     rows = [[t] + [fronts[i] for fronts in numbers["lubrication_m"].values()] + [level["front_m"][i] for level in numbers["slow"]] + [level["farthest_m"][i] for level in numbers["slow"]] for i, t in enumerate(numbers["times"])]
     text = f"Block of {2 * HALF_WIDTH:g} m x {HEIGHT:g} m, tau_y = {YIELD:g} rho g H, eta = {VISCOSITY:g} Pa s, free to both sides; from its middle to where it is {FRONT:g} m high [m]:\n\n"

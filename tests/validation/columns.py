@@ -130,9 +130,9 @@ def section(numbers, directory):
     left.loglog([r["a"] for r in finest], [r["farthest"] for r in finest], "^", mfc="none", label="farthest particle")
     left.loglog(SHORT, [r["farthest"] for r in numbers["beads"][-1]["rows"]], "s", mfc="none", label="glass beads, farthest")
     right.loglog([r["a"] for r in finest], [r["height"] for r in finest], "o")
-    left.set(xlabel="a", ylabel="run-out / half width")
-    right.set(xlabel="a", ylabel="height / half width")
-    left.legend(fontsize=6, loc="upper left")
+    left.set(xlabel="aspect ratio a = height / half width", ylabel="run-out / half width")
+    right.set(xlabel="aspect ratio a", ylabel="final height / half width")
+    left.legend(fontsize=7, loc="upper left")
     figure.tight_layout()
     counts = [level["spacings_in_half_width"] for level in numbers["levels"]]
     rows = [[per_a[0]["a"], *(r[key] for key in ("runout", "farthest", "height") for r in per_a)] for per_a in zip(*(level["rows"] for level in numbers["levels"]))]

@@ -43,7 +43,8 @@ def section(numbers, directory):
     for key, name in MEASURES.items():
         if key != "centre_of_mass_x_m":
             axes.semilogx([r["spacing_m"] for r in numbers["rows"]], [r[key] for r in numbers["rows"]], "o-", label=name)
-    axes.set(xlabel="dx [m]", ylabel="front [m]")
+    axes.set(xlabel="particle spacing dx [m]", ylabel="front [m]", xticks=[0.05, 0.1, 0.2, 0.4], xticklabels=["0.05", "0.1", "0.2", "0.4"])
+    axes.minorticks_off()
     axes.legend()
     rows = [[r["spacing_m"], *(f"{r[key]:.3f}" for key in MEASURES), f"{1000 * r['final_max_speed_m_s']:.1f}"] for r in numbers["rows"]]
     return table(["dx [m]", *(f"{name} [m]" for name in MEASURES.values()), "fastest particle at the end [mm/s]"], rows) + \

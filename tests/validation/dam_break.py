@@ -106,7 +106,7 @@ def section(numbers, directory):
     for level in numbers["levels"]:
         axes.plot(level["T"], level["Z"], label=f"a/{level['spacings_in_a']}")
     axes.plot(numbers["frictionless"]["T"], numbers["frictionless"]["Z"], ":", label=f"a/{numbers['frictionless']['spacings_in_a']}, frictionless")
-    axes.set(xlabel="T", ylabel="Z", xlim=(0, 4), ylim=(1, 6))
+    axes.set(xlabel="time T = t sqrt(2 g / a)", ylabel="front Z = x / a", xlim=(0, 4), ylim=(1, 6))
     axes.legend()
     rows = [[l["spacings_in_a"], slip, l["rms"], l["delay"], l["rms_after_delay"], l["kept"]]
             for l, slip in [*((l, "no slip") for l in numbers["levels"]), (numbers["frictionless"], "free slip")]]

@@ -225,8 +225,8 @@ def draw(numbers, directory):
             spread = np.array([s["influence_zone_m"]["stdev"] for s in found])
             low, high = np.array([s["influence_zone_m"]["stdev_ci95"] for s in found]).T
             axes.errorbar([TABLE_4[s["case"]][parameter] for s in found], spread, [spread - low, high - spread], fmt="o-", capsize=2, label=truncation)
-    left.set(xlabel="sigma of ln tan(phi)", ylabel="standard deviation of the run-out [m]", ylim=(0, None))
-    right.set(xlabel="ell [m]", ylim=(0, None))
+    left.set(xlabel="standard deviation sigma of ln tan(phi)", ylabel="standard deviation of the run-out [m]", ylim=(0, None))
+    right.set(xlabel="correlation length ell [m]", ylim=(0, None))
     left.legend()
     figure.tight_layout()
     text = fig.save(figure, directory, "paper_study_spread")
@@ -244,14 +244,15 @@ def histograms(numbers, directory):
             for s in series(numbers, truncation, cases):
                 panel.hist(s["fronts"], bins=np.arange(30, 40, 0.25), histtype="step", density=True, label=f"{'ell' if parameter else 'sigma'} = {TABLE_4[s['case']][parameter]:g}{unit}")
             panel.set(title=truncation, xlabel="run-out distance [m]", xlim=(30.5, 37.5))
-        row[-1].legend(fontsize=6)
+        row[-1].legend(fontsize=7)
+        row[0].set(ylabel="probability density [1/m]")
     figure.tight_layout()
     return fig.save(figure, directory, "paper_study_histograms")
 
 
 def means(numbers, directory):
     figure, axes = fig.plt.subplots(1, 2, figsize=(7.5, 3.2), sharey=True)
-    for panel, cases, parameter, label in ((axes[0], BY_SIGMA, 0, "sigma of ln tan(phi)"), (axes[1], BY_LENGTH, 1, "ell [m]")):
+    for panel, cases, parameter, label in ((axes[0], BY_SIGMA, 0, "standard deviation sigma of ln tan(phi)"), (axes[1], BY_LENGTH, 1, "correlation length ell [m]")):
         for truncation in TRUNCATIONS:
             if found := series(numbers, truncation, cases):
                 mean, (low, high) = np.array([s["influence_zone_m"]["mean"] for s in found]), np.array([s["influence_zone_m"]["mean_ci95"] for s in found]).T
