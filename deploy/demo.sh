@@ -13,7 +13,8 @@ cd "$(dirname "$0")/.."
 bin=${BIN:-build/release/bin}
 if [ -z "${BIN:-}" ]; then
   deploy/install-packages.sh build
-  [ -f build/release/build.ninja ] || cmake --preset release -DTALUS_TESTS=OFF >/dev/null
+  # Files joined into few units compile in a third of the time when all of them have to be.
+  [ -f build/release/build.ninja ] || cmake --preset release -DTALUS_TESTS=OFF -DCMAKE_UNITY_BUILD=ON >/dev/null
   cmake --build --preset release --target talus talusd
 fi
 study=("${CASE:-solver/cases/illustrative.json}"

@@ -10,12 +10,6 @@
 namespace talus::service {
 namespace {
 
-constexpr int default_limit = 100, max_limit = 1000;
-
-[[noreturn]] void bad(const std::string& name, const std::string& why) {
-  throw Refusal(Reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
-}
-
 /// Every value of a parameter that may stand more than once and hold a list.
 std::vector<std::string> values_of(const Incoming& request, const std::string& name) {
   std::vector<std::string> all;
@@ -31,13 +25,14 @@ void read_datetime(const std::string& text, JobFilter& filter) {
     if (part.empty() || part == "..") return std::nullopt;
     const auto time = utc_time(part);
     if (!time)
-      bad("datetime", "must be a date-time (2026-01-31T12:00:00Z) or an interval (DATETIME/DATETIME, ../DATETIME)");
+      bad_parameter("datetime",
+                    "must be a date-time (2026-01-31T12:00:00Z) or an interval (DATETIME/DATETIME, ../DATETIME)");
     return time;
   };
   const std::size_t slash = text.find('/');
   filter.created_from = end_of(text.substr(0, slash));
   filter.created_to = slash == std::string::npos ? filter.created_from : end_of(text.substr(slash + 1));
-  if (!filter.created_from && !filter.created_to) bad("datetime", "an interval needs at least one end");
+  if (!filter.created_from && !filter.created_to) bad_parameter("datetime", "an interval needs at least one end");
 }
 
 JobFilter filter_of(const Exchange& exchange) {
@@ -50,20 +45,20 @@ JobFilter filter_of(const Exchange& exchange) {
   filter.before = whole_number(request, "after", 0, std::int64_t{1} << 62);
   for (const std::string& name : values_of(request, "status")) {
     const auto state = job_state(name);
-    if (!state) bad("status", "must be accepted, running, successful, failed or dismissed");
+    if (!state) bad_parameter("status", "must be accepted, running, successful, failed or dismissed");
     filter.states.push_back(*state);
   }
   filter.processes = values_of(request, "processID");
   const std::vector<std::string> types = values_of(request, "type");
   if (std::any_of(types.begin(), types.end(), [](const std::string& type) { return type != "process"; }))
-    bad("type", "must be process");
+    bad_parameter("type", "must be process");
   if (const auto text = request.parameter("datetime")) read_datetime(*text, filter);
   if (const auto least = whole_number(request, "minDuration", 0, most_seconds)) filter.least_duration = 1000 * *least;
   if (const auto most = whole_number(request, "maxDuration", 0, most_seconds)) filter.most_duration = 1000 * *most;
   return filter;
 }
 
-Answer list(Exchange& exchange, Service& service) {
+Answer list_jobs(Exchange& exchange, Service& service) {
   JobFilter filter = filter_of(exchange);
   const auto limit = static_cast<std::size_t>(filter.limit++);  // one more, to see whether there is more
   std::vector<Job> jobs = service.store.jobs(filter);
@@ -106,7 +101,7 @@ Answer dismiss(Exchange& exchange, Service& service) {
 }  // namespace
 
 void add_job_routes(Router& router, Service& service) {
-  router.add("GET", "/jobs", Role::read, [&service](Exchange& e) { return list(e, service); });
+  router.add("GET", "/jobs", Role::read, [&service](Exchange& e) { return list_jobs(e, service); });
   router.add("GET", "/jobs/{}", Role::read,
              [&service](Exchange& e) { return json_answer(status_info(job_of(e, service), e)); });
   router.add("DELETE", "/jobs/{}", Role::submit, [&service](Exchange& e) { return dismiss(e, service); });

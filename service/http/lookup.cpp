@@ -35,10 +35,6 @@ std::string percent_encoded(const std::string& text) {
   return out;
 }
 
-[[noreturn]] void bad_parameter(const std::string& name, const std::string& why) {
-  throw Refusal(Reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
-}
-
 std::string key_of(const Exchange& exchange) {
   const std::string key = exchange.request.header("idempotency-key");
   if (key.size() > max_key)
@@ -51,6 +47,10 @@ std::string fingerprint(const Incoming& request) {
 }
 
 }  // namespace
+
+void bad_parameter(const std::string& name, const std::string& why) {
+  throw Refusal(Reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
+}
 
 Job job_of(const Exchange& exchange, Service& service) {
   std::optional<Job> job = service.store.job(exchange.captured.at(0));

@@ -12,6 +12,12 @@ Job job_of(const Exchange& exchange, Service& service);
 /// The same, of a study, not dismissed.
 Job study_of(const Exchange& exchange, Service& service);
 
+// How many entries a page of a list holds.
+inline constexpr int default_limit = 100, max_limit = 1000;
+
+/// @throws Refusal bad_request, always: what is wrong with a query parameter
+[[noreturn]] void bad_parameter(const std::string& name, const std::string& why);
+
 /// A whole number in the query. @throws Refusal bad_request
 std::optional<std::int64_t> whole_number(const Incoming& request, const std::string& name, std::int64_t least,
                                          std::int64_t most);

@@ -10,12 +10,8 @@
 namespace talus::service {
 namespace {
 
-constexpr int max_bins = 1000, max_edges = 1001, default_limit = 100, max_limit = 1000;
+constexpr int max_bins = 1000, max_edges = 1001;
 constexpr std::int64_t most_realizations = 1'000'000'000;
-
-[[noreturn]] void bad(const std::string& name, const std::string& why) {
-  throw Refusal(Reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
-}
 
 std::vector<double> edges_of(const Incoming& request) {
   std::vector<double> edges;
@@ -25,11 +21,12 @@ std::vector<double> edges_of(const Incoming& request) {
     double value = 0.0;
     const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
     if (error != std::errc() || end != part.data() + part.size() || !std::isfinite(value))
-      bad("edges", "must be numbers separated by commas");
+      bad_parameter("edges", "must be numbers separated by commas");
     edges.push_back(value);
   }
   const bool grow = std::adjacent_find(edges.begin(), edges.end(), std::greater_equal<>()) == edges.end();
-  if (edges.size() < 2 || edges.size() > max_edges || !grow) bad("edges", "must be 2 to 1001 increasing numbers");
+  if (edges.size() < 2 || edges.size() > max_edges || !grow)
+    bad_parameter("edges", "must be 2 to 1001 increasing numbers");
   return edges;
 }
 
@@ -58,7 +55,7 @@ Answer histogram(Exchange& exchange, Service& service) {
   const int quantity = quantity_index(name, "?quantity");
   const auto bins = whole_number(request, "bins", 1, max_bins);
   const std::vector<double> edges = edges_of(request);
-  if (bins && !edges.empty()) bad("bins", "cannot be combined with edges");
+  if (bins && !edges.empty()) bad_parameter("bins", "cannot be combined with edges");
   Json answer =
       service.jobs.distribution(job, quantity, bins ? std::optional(static_cast<int>(*bins)) : std::nullopt, edges);
   answer["partial"] = !ended(job.state);
@@ -84,14 +81,14 @@ Json brief(const Run& run, const Exchange& exchange, const Job& job) {
   return json;
 }
 
-Answer list(Exchange& exchange, Service& service) {
+Answer list_realizations(Exchange& exchange, Service& service) {
   const Incoming& request = exchange.request;
   const Job job = study_of(exchange, service);
   only_parameters(request, {"state", "quantity", "min", "below", "max", "after", "limit"});
   RunFilter filter;
   if (const auto name = request.parameter("state")) {
     filter.state = run_state(*name);
-    if (!filter.state) bad("state", "must be queued, leased, done or failed");
+    if (!filter.state) bad_parameter("state", "must be queued, leased, done or failed");
   }
   filter.measure = quantity_index(request.parameter("quantity").value_or(measure_names[0]), "?quantity");
   filter.least = real_number(request, "min");
@@ -154,7 +151,7 @@ bool wants_svg(const Incoming& request) {
   only_parameters(request, {"format"});
   const auto format = request.parameter("format");
   if (!format) return request.header("accept").find("image/svg+xml") != std::string::npos;
-  if (*format != "json" && *format != "svg") bad("format", "must be json or svg");
+  if (*format != "json" && *format != "svg") bad_parameter("format", "must be json or svg");
   return *format == "svg";
 }
 
@@ -205,7 +202,7 @@ void add_realization_routes(Router& router, Service& service) {
     router.add(method, "/jobs/{}" + tail, role, [&service, handler](Exchange& e) { return handler(e, service); });
   };
   add("GET", "/histogram", Role::read, histogram);
-  add("GET", "/realizations", Role::read, list);
+  add("GET", "/realizations", Role::read, list_realizations);
   add("GET", "/realizations/{}", Role::read, one);
   add("GET", "/realizations/{}/field", Role::read, field);
   add("GET", "/realizations/{}/profile", Role::read, profile);

@@ -10,8 +10,6 @@
 namespace talus {
 namespace {
 
-constexpr Quantity coordinate{"m", -1e6, 1e6};
-
 enum class End { wall, open };
 constexpr Names<End> ends[] = {{"wall", End::wall}, {"open", End::open}};
 

@@ -3,13 +3,13 @@
 #include <cstdint>
 
 #include "case/sections.hpp"
+#include "case/vertices.hpp"
 #include "random_field/marginals.hpp"
 
 namespace talus {
 namespace {
 
 constexpr Quantity length{"m", 0.0, 1e6, true};
-constexpr Quantity coordinate{"m", -1e6, 1e6};
 constexpr Quantity log_stdev_range{"", -5.0, 5.0};
 constexpr Quantity cov_range{"", 0.0, 10.0};
 constexpr double most_exact_integer = 9007199254740991.0;  // 2^53 - 1: what every reader of JSON keeps exact

@@ -8,8 +8,6 @@
 namespace talus {
 namespace {
 
-constexpr Quantity coordinate{"m", -1e6, 1e6};
-
 std::string_view trim(std::string_view s) {
   constexpr std::string_view blanks = " \t\r\"";
   const auto first = s.find_first_not_of(blanks);

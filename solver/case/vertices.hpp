@@ -11,6 +11,8 @@
 
 namespace talus {
 
+inline constexpr Quantity coordinate{"m", -1e6, 1e6};  ///< range of every x and y of a case
+
 /// Most vertices of one polyline.
 constexpr std::size_t most_vertices = 20'000;
 

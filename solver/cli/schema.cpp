@@ -1,9 +1,10 @@
 // talus schema: prints a JSON Schema, the names of the schemas, or the keys of a case.
 
+#include "case/schema.hpp"
+
 #include <iostream>
 #include <memory>
 
-#include "case/schema.hpp"
 #include "case/words.hpp"
 #include "cli/schemas.hpp"
 #include "cli/verbs.hpp"

@@ -19,12 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const std::string& doing, const fs::path& path, int error) {
-  ProcessError thrown("cannot " + doing + " " + path.string() + ": " + std::generic_category().message(error));
-  thrown.error = error;
-  throw thrown;
-}
-
 /// posix_spawn's two attribute objects, freed together.
 struct SpawnSetup {
   posix_spawn_file_actions_t files;
@@ -88,6 +82,12 @@ ProcessEnd decoded(int status) {
 }
 
 }  // namespace
+
+void fail(const std::string& doing, const fs::path& path, int error) {
+  ProcessError thrown("cannot " + doing + " " + path.string() + ": " + std::generic_category().message(error));
+  thrown.error = error;
+  throw thrown;
+}
 
 Process::Process(const Command& command, const fs::path& out, const fs::path& err) {
   create(out);

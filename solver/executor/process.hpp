@@ -18,6 +18,9 @@ struct ProcessError : std::runtime_error {
   int error = 0;  ///< errno
 };
 
+/// @throws ProcessError "cannot DOING PATH: " and what errno `error` means
+[[noreturn]] void fail(const std::string& doing, const std::filesystem::path& path, int error);
+
 /// What a process may use at most; 0: no limit.
 struct Limits {
   std::uint64_t memory_bytes = 0;  ///< address space

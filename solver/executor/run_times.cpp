@@ -7,10 +7,11 @@ namespace talus::executor {
 namespace {
 
 constexpr double worth_a_task_s = 10.0;  ///< the start of a task is then a tenth of it
-constexpr std::size_t most_runs = 5000;
+constexpr std::size_t most_runs_of_task = 5000;
 
 std::size_t runs_in(double seconds, double run_s) {
-  return static_cast<std::size_t>(std::clamp(std::ceil(seconds / std::max(run_s, 1e-3)), 1.0, double{most_runs}));
+  return static_cast<std::size_t>(
+      std::clamp(std::ceil(seconds / std::max(run_s, 1e-3)), 1.0, double{most_runs_of_task}));
 }
 
 }  // namespace

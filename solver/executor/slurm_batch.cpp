@@ -20,12 +20,6 @@ using Json = nlohmann::json;
 constexpr const char* script_text = "#!/bin/sh\nexec \"$@\"\n";
 constexpr std::uintmax_t max_bytes = std::uintmax_t{256} << 20;
 
-[[noreturn]] void fail(const std::string& doing, const fs::path& path, int error) {
-  ProcessError thrown("cannot " + doing + " " + path.string() + ": " + std::generic_category().message(error));
-  thrown.error = error;
-  throw thrown;
-}
-
 /// By a temporary file of this process beside it, fsync, rename.
 void write_whole(const fs::path& path, const std::string& text) {
   const fs::path temporary = path.string() + ".tmp-" + std::to_string(::getpid());

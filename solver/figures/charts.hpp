@@ -9,6 +9,10 @@
 
 namespace talus::figures {
 
+// Sheet and frame of the charts with one panel [px].
+inline constexpr Canvas chart_canvas{900, 576};
+inline constexpr Panel chart_panel{84, 872, 84, 488};
+
 /// Histogram of the influence zone; beneath it, on the same scale, the interval of the mean, the spread and the
 /// numerical noise floor.
 Sheet histogram_sheet(const StudyFiles& study);

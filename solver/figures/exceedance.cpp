@@ -5,9 +5,6 @@
 namespace talus::figures {
 namespace {
 
-constexpr Canvas canvas{900, 576};
-constexpr Panel panel{84, 872, 84, 488};
-
 constexpr double least_beyond = 5;  // fewer runs beyond a quantile say too little about it
 
 // A point of the curve that readers ask for.
@@ -28,7 +25,7 @@ Sheet exceedance_sheet(const StudyFiles& study) {
   const std::string subtitle =
       std::string("Probability that the run-out exceeds x, given failure. Band: 95 % (Wilson)") +
       (study.failed > 0 ? ", widened to allow for failed runs (none to all of them exceed x)" : "");
-  Sheet sheet{begin(canvas, chart_stamps(study, subtitle)), canvas};
+  Sheet sheet{begin(chart_canvas, chart_stamps(study, subtitle)), chart_canvas};
   Script& script = sheet.script;
   std::vector<std::array<double, 4>> rows;
   for (const Exceedance& e : q.exceedance) rows.push_back({e.x, e.p, e.lo, e.hi});
@@ -45,7 +42,7 @@ Sheet exceedance_sheet(const StudyFiles& study) {
   mark(script, study, 0.5, "half of the runs");
   mark(script, study, 0.9, "1 in 10");
   mark(script, study, 0.99, "1 in 100");
-  place(script, canvas, panel);
+  place(script, chart_canvas, chart_panel);
   script("plot $curve using 1:3:4 with filledcurves fillcolor rgb '", blue,
          "' fillstyle transparent solid 0.22 noborder, \\");
   script("  $curve using 1:2 with lines linewidth 2 linecolor rgb '", blue, "'");

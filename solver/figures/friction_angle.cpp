@@ -7,9 +7,6 @@
 namespace talus::figures {
 namespace {
 
-constexpr Canvas canvas{900, 576};
-constexpr Panel panel{84, 872, 84, 488};
-
 Vec2 range_of(std::span<const double> values) {
   if (values.empty()) return {0, 1};
   const auto [lo, hi] = std::minmax_element(values.begin(), values.end());
@@ -36,7 +33,7 @@ Sheet friction_angle_sheet(const StudyFiles& study) {
   const std::optional<double> r = correlation(phi, zone);
   const std::string words =
       r ? "Correlation " + fixed(*r, 2) + "; dashed: least squares" : std::string("One point per run");
-  Sheet sheet{begin(canvas, chart_stamps(study, words)), canvas};
+  Sheet sheet{begin(chart_canvas, chart_stamps(study, words)), chart_canvas};
   Script& script = sheet.script;
   const Vec2 x = range_of(phi);
   const Vec2 y = range_of(zone);
@@ -47,7 +44,7 @@ Sheet friction_angle_sheet(const StudyFiles& study) {
   script("set ytics ", nice_step(y.y - y.x, 8));
   script("set xlabel 'mean friction angle of the slide (°)'");
   script("set ylabel 'run-out distance (m)'");
-  place(script, canvas, panel);
+  place(script, chart_canvas, chart_panel);
   std::string line;
   if (r) {
     const SampleMoments mx = moments(phi);

@@ -7,7 +7,7 @@
 namespace talus::figures {
 namespace {
 
-constexpr Canvas canvas{900, 616};
+constexpr Canvas histogram_canvas{900, 616};
 constexpr Panel bars{166, 872, 84, 420};
 constexpr Panel strip{166, 872, 428, 532};
 
@@ -64,8 +64,8 @@ void draw_strip(Script& script, const std::vector<Bar>& all) {
   for (const Bar& bar : all) {
     const std::string name = "strip" + number(bar.row);
     script.data(name, std::array<std::array<double, 3>, 1>{{{bar.lo, bar.hi, bar.row}}});
-    text(script, canvas, strip.left - 10, strip.bottom - (bar.row - 0.4) / 3.2 * strip.height(), bar.name, Align::right,
-         10, false, bar.colour);
+    text(script, histogram_canvas, strip.left - 10, strip.bottom - (bar.row - 0.4) / 3.2 * strip.height(), bar.name,
+         Align::right, 10, false, bar.colour);
     plot += std::string(plot.empty() ? "" : ", ") + "$" + name +
             " using (0.5*($1+$2)):3:1:2:($3-0.25):($3+0.25) with boxxyerror fillstyle solid 0.9 border rgb '" +
             bar.colour + "' linecolor rgb '" + bar.colour + "'";
@@ -97,21 +97,21 @@ Sheet histogram_sheet(const StudyFiles& study) {
   std::string subtitle = "Mean " + interval_text(q.mean, q.mean_ci95) + ", standard deviation " +
                          interval_text(q.stdev, q.stdev_ci95) + ", numerical noise " +
                          (q.noise_floor_stdev ? fixed(1000 * *q.noise_floor_stdev, 2) + " mm" : "not measured");
-  Sheet sheet{begin(canvas, chart_stamps(study, std::move(subtitle))), canvas};
+  Sheet sheet{begin(histogram_canvas, chart_stamps(study, std::move(subtitle))), histogram_canvas};
   Script& script = sheet.script;
   const std::vector<Bar> all = strip_bars(q);
   const Vec2 range = x_range(q, all);
   script("set xrange [", range.x, ":", range.y, "]");
   script("set xtics ", nice_step(range.y - range.x, 8));
   if (q.histogram.underflow > 0)
-    text(script, canvas, bars.left + 8, bars.top + 8, std::to_string(q.histogram.underflow) + " below", Align::left, 9,
-         false, faint);
+    text(script, histogram_canvas, bars.left + 8, bars.top + 8, std::to_string(q.histogram.underflow) + " below",
+         Align::left, 9, false, faint);
   if (q.histogram.overflow > 0)
-    text(script, canvas, bars.right - 8, bars.top + 8, std::to_string(q.histogram.overflow) + " above", Align::right, 9,
-         false, faint);
-  place(script, canvas, bars);
+    text(script, histogram_canvas, bars.right - 8, bars.top + 8, std::to_string(q.histogram.overflow) + " above",
+         Align::right, 9, false, faint);
+  place(script, histogram_canvas, bars);
   draw_bars(script, q);
-  place(script, canvas, strip);
+  place(script, histogram_canvas, strip);
   draw_strip(script, all);
   return sheet;
 }

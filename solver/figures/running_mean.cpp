@@ -8,8 +8,6 @@
 namespace talus::figures {
 namespace {
 
-constexpr Canvas canvas{900, 576};
-constexpr Panel panel{84, 872, 84, 488};
 constexpr std::size_t points = 300;  // along the curve, at most
 constexpr double settled = 8;        // intervals of fewer realizations may leave the picture
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -51,10 +49,10 @@ Vec2 y_range(const std::vector<std::array<double, 4>>& rows) {
 
 Sheet running_mean_sheet(const StudyFiles& study) {
   const Quantity& q = study.quantities.at("influence_zone_m");
-  Sheet sheet{
-      begin(canvas, chart_stamps(study, "Mean run-out distance of the first n runs: " +
+  Sheet sheet{begin(chart_canvas,
+                    chart_stamps(study, "Mean run-out distance of the first n runs: " +
                                             interval_text(q.mean, q.mean_ci95) + ". Band: 95 % interval (Student)")),
-      canvas};
+              chart_canvas};
   Script& script = sheet.script;
   const auto rows = running_means(study.realizations);
   if (rows.empty()) return sheet;
@@ -67,7 +65,7 @@ Sheet running_mean_sheet(const StudyFiles& study) {
   script("set ytics ", nice_step(y.y - y.x, 8));
   script("set xlabel 'realizations n'");
   script("set ylabel 'mean run-out distance (m)'");
-  place(script, canvas, panel);
+  place(script, chart_canvas, chart_panel);
   script("plot $means using 1:3:4 with filledcurves fillcolor rgb '", blue,
          "' fillstyle transparent solid 0.22 noborder, \\");
   script("  $final using 1:2 with lines dashtype 2 linewidth 1 linecolor rgb '", vermillion, "', \\");

@@ -7,8 +7,8 @@
 namespace talus::figures {
 namespace {
 
-constexpr Canvas canvas{900, 520};
-constexpr Panel panel{190, 812, 84, 440};
+constexpr Canvas spread_canvas{900, 520};
+constexpr Panel spread_panel{190, 812, 84, 440};
 constexpr std::array<std::pair<const char*, const char*>, 5> measures{{{"influence_zone_m", "farthest particle"},
                                                                        {"front_connected_m", "connected body"},
                                                                        {"front_mass_999_m", "99.9 % of the mass"},
@@ -25,26 +25,26 @@ Row spread_row(const Quantity& q, double row) {
 }
 
 void legend(Script& script, double x, const char* colour, const char* name) {
-  text(script, canvas, x, 72, "■", Align::left, 10, false, colour);
-  text(script, canvas, x + 16, 72, name);
+  text(script, spread_canvas, x, 72, "■", Align::left, 10, false, colour);
+  text(script, spread_canvas, x + 16, 72, name);
 }
 
 }  // namespace
 
 Sheet spread_sheet(const StudyFiles& study) {
-  Sheet sheet{
-      begin(canvas, chart_stamps(study, "Standard deviation from soil variability, compared with the numerical noise")),
-      canvas};
+  Sheet sheet{begin(spread_canvas,
+                    chart_stamps(study, "Standard deviation from soil variability, compared with the numerical noise")),
+              spread_canvas};
   Script& script = sheet.script;
-  legend(script, panel.left, blue, "standard deviation, 95 % interval");
-  legend(script, panel.left + 260, vermillion, "numerical noise");
+  legend(script, spread_panel.left, blue, "standard deviation, 95 % interval");
+  legend(script, spread_panel.left + 260, vermillion, "numerical noise");
   std::vector<Row> spread;
   std::vector<Row> floor;
   double widest = 0.0;
   for (std::size_t i = 0; i < measures.size(); ++i) {
     const double row = static_cast<double>(measures.size() - i);
-    text(script, canvas, panel.left - 10, panel.bottom - (row - 0.4) / 5.2 * panel.height(), measures[i].second,
-         Align::right);
+    text(script, spread_canvas, spread_panel.left - 10, spread_panel.bottom - (row - 0.4) / 5.2 * spread_panel.height(),
+         measures[i].second, Align::right);
     const auto found = study.quantities.find(measures[i].first);
     if (found == study.quantities.end()) continue;
     const Quantity& q = found->second;
@@ -54,8 +54,8 @@ Sheet spread_sheet(const StudyFiles& study) {
     widest = std::max(widest, reach == reach ? reach : q.stdev.value_or(0.0));
     const std::string values = fixed(q.stdev.value_or(0.0), 3) + " / " +
                                (q.noise_floor_stdev ? fixed(*q.noise_floor_stdev, 3) : std::string("–"));
-    text(script, canvas, canvas.width - 24, panel.bottom - (row - 0.4) / 5.2 * panel.height(), values, Align::right, 9,
-         false, faint);
+    text(script, spread_canvas, spread_canvas.width - 24,
+         spread_panel.bottom - (row - 0.4) / 5.2 * spread_panel.height(), values, Align::right, 9, false, faint);
   }
   if (widest <= 0.0) widest = 1.0;
   script.data("spread", spread).data("floor", floor);
@@ -65,7 +65,7 @@ Sheet spread_sheet(const StudyFiles& study) {
   script("unset ytics");
   script("set border 1");
   script("set xlabel 'standard deviation over the realizations (m)'");
-  place(script, canvas, panel);
+  place(script, spread_canvas, spread_panel);
   script(
       "plot $spread using ($1/2):4:(0):1:($4-0.16):($4+0.16) with boxxyerror fillstyle solid 0.75 noborder linecolor "
       "rgb '",

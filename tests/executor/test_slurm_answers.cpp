@@ -40,7 +40,8 @@ std::string message(Action action) {
 
 TEST(SlurmQueue, ReadsSlurm2205) {
   const SlurmQueue q(queue(R"(
-    {"array_job_id": 7, "array_task_id": null, "array_task_string": "2-4,9%3", "job_state": "PENDING", "name": "talus-x"},
+    {"array_job_id": 7, "array_task_id": null, "array_task_string": "2-4,9%3", "job_state": "PENDING",
+     "name": "talus-x"},
     {"array_job_id": 7, "array_task_id": 0, "array_task_string": "", "job_state": "RUNNING", "name": "talus-x"},
     {"array_job_id": 7, "array_task_id": 1, "array_task_string": "", "job_state": "NODE_FAIL", "name": "talus-x"},
     {"array_job_id": 0, "array_task_id": null, "job_state": "RUNNING", "name": "another"})"));
@@ -58,8 +59,10 @@ TEST(SlurmQueue, ReadsLaterVersions) {
   const SlurmQueue q(queue(R"(
     {"array_job_id": {"set": true, "infinite": false, "number": 7}, "array_task_id": {"set": false, "number": 0},
      "array_task_string": "1,3,...", "job_state": ["PENDING"], "name": "a"},
-    {"array_job_id": {"set": true, "number": 7}, "array_task_id": {"set": true, "number": 0}, "job_state": ["TIMEOUT", "COMPLETING"], "name": "a"},
-    {"array_job_id": {"set": true, "number": 7}, "array_task_id": {"set": true, "number": 2}, "job_state": ["TIMEOUT"], "name": "a"})"));
+    {"array_job_id": {"set": true, "number": 7}, "array_task_id": {"set": true, "number": 0},
+     "job_state": ["TIMEOUT", "COMPLETING"], "name": "a"},
+    {"array_job_id": {"set": true, "number": 7}, "array_task_id": {"set": true, "number": 2},
+     "job_state": ["TIMEOUT"], "name": "a"})"));
   EXPECT_TRUE(q.task(7, 0)->alive);
   EXPECT_FALSE(q.task(7, 2)->alive);
   EXPECT_TRUE(q.task(7, 999)->alive);  // the list is cut short: it may be any that has no record of its own

@@ -3,21 +3,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "io/result_json.hpp"
-
-// libvalijson 1.0 leaves a parameter of its own unused.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validation_results.hpp>
-#include <valijson/validator.hpp>
-#pragma GCC diagnostic pop
-
 #include "faults.hpp"
 #include "io/files.hpp"
+#include "io/result_json.hpp"
 #include "math/angle.hpp"
+#include "schema_check.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus {
@@ -65,24 +55,10 @@ Provenance sample_provenance() {
           .started_utc = "2025-01-31T12:00:00Z"};
 }
 
-/// What the schema objects to, "" where it is content.
+/// What the schema objects to; "" when nothing.
 std::string schema_faults(const json& document) {
-  const json schema_json = json::parse(read_file(TALUS_SOURCE_DIR "/schemas/result.schema.json", megabyte));
-  valijson::Schema schema;
-  valijson::SchemaParser parser;
-  valijson::adapters::NlohmannJsonAdapter schema_adapter(schema_json);
-  parser.populateSchema(schema_adapter, schema);
-  valijson::Validator validator(valijson::Validator::kStrongTypes);
-  valijson::ValidationResults results;
-  valijson::adapters::NlohmannJsonAdapter adapter(document);
-  std::string faults;
-  if (validator.validate(schema, adapter, &results)) return faults;
-  valijson::ValidationResults::Error error;
-  while (results.popError(error)) {
-    for (const std::string& part : error.context) faults += part;
-    faults += ": " + error.description + "\n";
-  }
-  return faults.empty() ? "not valid" : faults;
+  static const test::SchemaCheck schema("result");
+  return schema.complaint(document);
 }
 
 json document() { return json::parse(result_json(sample_result(), sample_provenance()).dump()); }

@@ -1,9 +1,5 @@
-#include <valijson/adapters/nlohmann_json_adapter.hpp>
-#include <valijson/schema.hpp>
-#include <valijson/schema_parser.hpp>
-#include <valijson/validator.hpp>
-
 #include "monte_carlo/histogram.hpp"
+#include "schema_check.hpp"
 #include "studies.hpp"
 #include "study/summary.hpp"
 
@@ -12,21 +8,10 @@ using namespace talus::fixtures;
 
 namespace {
 
-/// What schemas/study.schema.json has against `study`.
+/// What schemas/study.schema.json has against `study`; "" when nothing.
 std::string against_schema(const nlohmann::ordered_json& study) {
-  using Adapter = valijson::adapters::NlohmannJsonAdapter;
-  const nlohmann::json text = nlohmann::json::parse(content(TALUS_SOURCE_DIR "/schemas/study.schema.json"));
-  const nlohmann::json document = nlohmann::json::parse(study.dump());
-  valijson::Schema schema;
-  valijson::SchemaParser().populateSchema(Adapter(text), schema);
-  valijson::ValidationResults results;
-  valijson::Validator().validate(schema, Adapter(document), &results);
-  std::string faults;
-  for (const auto& fault : results) {
-    for (const std::string& part : fault.context) faults += part;
-    faults += ": " + fault.description + "\n";
-  }
-  return faults;
+  static const talus::test::SchemaCheck schema("study");
+  return schema.complaint(nlohmann::json::parse(study.dump()));
 }
 
 std::vector<Record> some_runs() {
