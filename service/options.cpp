@@ -94,12 +94,14 @@ Options read_options(int argc, char** argv) {
   app.add_option("--http-threads", config.http_threads, "maximum number of concurrent connections")
       ->check(CLI::Range(64, 4096))
       ->capture_default_str();
-  app.add_option("--max-particles", config.quotas.particles, "maximum number of particles of a case")->capture_default_str();
+  app.add_option("--max-particles", config.quotas.particles, "maximum number of particles of a case")
+      ->capture_default_str();
   app.add_option("--max-steps", config.quotas.steps, "maximum number of time steps of a run")->capture_default_str();
   app.add_option("--max-realizations", config.quotas.realizations, "maximum number of realizations of a job")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  app.add_option("--max-core-hours", config.quotas.core_hours, "maximum estimated cost of a job [core hours]")->capture_default_str();
+  app.add_option("--max-core-hours", config.quotas.core_hours, "maximum estimated cost of a job [core hours]")
+      ->capture_default_str();
   app.add_option("--max-jobs", config.quotas.open_jobs, "maximum number of open jobs")->capture_default_str();
   app.add_option("--max-jobs-each", config.quotas.open_jobs_of_one, "maximum number of open jobs per subject")
       ->capture_default_str();
