@@ -63,7 +63,10 @@ std::vector<double> equal_edges(std::span<const double> sorted, std::size_t bins
   if (sorted.empty()) return {};
   double lo = sorted.front(), hi = sorted.back();
   const double least = 1e-9 * std::max({std::abs(lo), std::abs(hi), 1.0});
-  if (hi - lo < least) lo -= 0.05, hi += 0.05;
+  if (hi - lo < least) {
+    lo -= 0.05;
+    hi += 0.05;
+  }
   std::vector<double> edges(bins + 1, hi);  // the last one exactly, so that the greatest value is inside
   for (std::size_t i = 0; i < bins; ++i) edges[i] = lo + (hi - lo) * static_cast<double>(i) / static_cast<double>(bins);
   return edges;

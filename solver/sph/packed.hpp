@@ -42,7 +42,12 @@ struct PackedSoil {
 /// The rates that a state can be moved on with; calls f(name, array).
 template <class P, class F>
 void for_each_packed_rate(P& s, F&& f) {
-  f("ax", s.ax), f("ay", s.ay), f("drho", s.drho), f("dtxx", s.dtxx), f("dtyy", s.dtyy), f("dtxy", s.dtxy);
+  f("ax", s.ax);
+  f("ay", s.ay);
+  f("drho", s.drho);
+  f("dtxx", s.dtxx);
+  f("dtyy", s.dtyy);
+  f("dtxy", s.dtxy);
 }
 
 struct PackedWalls {

@@ -141,7 +141,10 @@ TEST(Charts, SpreadHasEveryMeasureFromTopToBottom) {
 // Studies of one, of two, of equal runs, with failures, without a noise floor: all drawn, gnuplot content.
 TEST(Charts, GnuplotHasNothingToSayHoweverSmallTheStudy) {
   StudyFiles equal = example(4, false);
-  for (Done& r : equal.realizations) r.influence_zone = 30.0, r.mean_phi_deg = 25.0;
+  for (Done& r : equal.realizations) {
+    r.influence_zone = 30.0;
+    r.mean_phi_deg = 25.0;
+  }
   for (const StudyFiles& study :
        {example(1, false, false), example(2, false), example(3, true), example(200, true), equal}) {
     for (const Sheet& sheet : all_sheets(study)) {

@@ -17,7 +17,10 @@ Cloud random_cloud(std::size_t n, double width, double height, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> ux(-width, width), uy(0.3, 0.3 + height);
   Cloud c;
-  for (std::size_t i = 0; i < n; ++i) c.x.push_back(ux(engine)), c.y.push_back(uy(engine));
+  for (std::size_t i = 0; i < n; ++i) {
+    c.x.push_back(ux(engine));
+    c.y.push_back(uy(engine));
+  }
   return c;
 }
 
@@ -68,8 +71,10 @@ TEST(CellList, SearchesFromOutsideTheGrid) {
 
 TEST(CellList, OneStrayPointFarAwayDoesNotExhaustMemory) {
   Cloud c = random_cloud(300, 1.0, 1.0, 3);
-  c.x.push_back(1e12), c.y.push_back(-1e12);
-  c.x.push_back(1e12 + 0.01), c.y.push_back(-1e12);
+  c.x.push_back(1e12);
+  c.y.push_back(-1e12);
+  c.x.push_back(1e12 + 0.01);
+  c.y.push_back(-1e12);
   EXPECT_TRUE(pairs_of(c, 0.1).contains({300, 301}));
 }
 

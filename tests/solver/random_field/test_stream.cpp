@@ -51,7 +51,10 @@ TEST(StandardNormal, Moments) {
   double m1 = 0, m2 = 0, m3 = 0, m4 = 0;
   for (int i = 0; i < n; ++i) {
     const double x = standard_normal(11, static_cast<std::uint64_t>(i / 100), static_cast<std::uint32_t>(i % 100));
-    m1 += x / n, m2 += x * x / n, m3 += x * x * x / n, m4 += x * x * x * x / n;
+    m1 += x / n;
+    m2 += x * x / n;
+    m3 += x * x * x / n;
+    m4 += x * x * x * x / n;
   }
   const double z = 5, root_n = std::sqrt(n);
   EXPECT_NEAR(m1, 0, z * std::sqrt(1) / root_n);

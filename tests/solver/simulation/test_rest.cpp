@@ -29,7 +29,10 @@ double profile_error(const Simulation& simulation, double height, bool vertical_
 double surface(const Soil& s) {
   double top = 0, n = 0;
   for (std::size_t i = 0; i < s.size(); ++i)
-    if (s.id[i] >= static_cast<std::int32_t>(s.size()) - 20) top += s.y[i], ++n;
+    if (s.id[i] >= static_cast<std::int32_t>(s.size()) - 20) {
+      top += s.y[i];
+      ++n;
+    }
   return top / n;
 }
 
@@ -61,7 +64,8 @@ TEST(Rest, HoldsForEveryDensityTreatmentKernelAndIntegrator) {
                                Option{"none", [](Model& m) { m.numerics.density_filter = DensityFilter::none; }},
                                Option{"wendland",
                                       [](Model& m) {
-                                        m.numerics.kernel = KernelShape::wendland_c2, m.numerics.h_over_dx = 1.5;
+                                        m.numerics.kernel = KernelShape::wendland_c2;
+                                        m.numerics.h_over_dx = 1.5;
                                         m.walls.layers = 4;
                                       }},
                                Option{"leapfrog", [](Model& m) { m.numerics.integrator = Integrator::leapfrog; }},
@@ -83,7 +87,8 @@ TEST(Rest, HoldsForEveryDensityTreatmentKernelAndIntegrator) {
 TEST(Rest, StressFreeStartSettlesToTheSameVerticalStress) {
   Model m = column(2.0, 1.0, 0.1);
   m.numerics.initial_pressure = InitialPressure::stress_free;
-  m.numerics.kernel = KernelShape::cubic_spline,
+  m.numerics.kernel = KernelShape::cubic_spline;
+
   m.numerics.h_over_dx = 1.2;          // the default's wider kernel is 9 % off with ten rows
   m.walls.slip = WallSlip::free_slip;  // rough side walls would carry part of the weight, as in a silo
   m.time.end = 2.0;
@@ -106,7 +111,10 @@ TEST(Rest, LayersOfTwoDensitiesStayPut) {
   double p_bottom = 0, n = 0;
   const Frame f = simulation.frame();
   for (std::size_t i = 0; i < f.n_soil; ++i)
-    if (f.position[i].y < 0.1) p_bottom += f.pressure[i], ++n;
+    if (f.position[i].y < 0.1) {
+      p_bottom += f.pressure[i];
+      ++n;
+    }
   EXPECT_NEAR(p_bottom / n, 9.81 * (1600 * 0.5 + 2400 * 0.45), 0.03 * 9.81 * 2000);
 }
 
