@@ -11,7 +11,7 @@
 namespace talus {
 namespace {
 
-void check_apart(const Model& model, const Origins& origins, Faults& faults) {
+void check_apart(const Model& model, const SourceLocations& origins, Faults& faults) {
   for (std::size_t a = 0; a < model.slide.size(); ++a)
     for (std::size_t b = a + 1; b < model.slide.size(); ++b)
       if (const double shared = shared_area(model.slide[a].outline, model.slide[b].outline);
@@ -76,25 +76,25 @@ double energy_line_over(const Model& model, Vec2 end) {
   return height - end.y;
 }
 
-void doubt_open_ends(const Model& model, std::vector<Fault>& doubts) {
+void warn_of_open_ends(const Model& model, std::vector<Fault>& warnings) {
   const Terrain& t = model.terrain;
-  const auto look = [&](bool wall, Vec2 end, const char* pointer) {
+  const auto check_end = [&](bool wall, Vec2 end, const char* pointer) {
     const double over = energy_line_over(model, end);
     if (!wall && over > 0.0)
-      doubts.push_back({pointer, "may leak: the energy line at the friction angle passes " + rounded(over) +
-                                     " m above the bed's end " + to_text(end) +
-                                     "; soil that leaves is lost, so extend the bed or set a wall"});
+      warnings.push_back({pointer, "may leak: the energy line at the friction angle passes " + rounded(over) +
+                                       " m above the bed's end " + to_text(end) +
+                                       "; soil that leaves is lost, so extend the bed or set a wall"});
   };
-  look(t.left_wall, t.bed.front(), "/terrain/left_end");
-  look(t.right_wall, t.bed.back(), "/terrain/right_end");
+  check_end(t.left_wall, t.bed.front(), "/terrain/left_end");
+  check_end(t.right_wall, t.bed.back(), "/terrain/right_end");
   if ((t.left_wall || t.right_wall) && bounding_box(model.slide).hi.y > t.wall_top)
-    doubts.push_back(
+    warnings.push_back(
         {"/terrain/wall_top_m", "is lower than the slide's highest point; soil may spill over the wall and is lost"});
 }
 
 }  // namespace
 
-void check_geometry(const Model& model, const Origins& origins, Faults& faults) {
+void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults) {
   check_apart(model, origins, faults);
   for (std::size_t k = 0; k < model.slide.size(); ++k)
     check_on_ground(model.slide[k], origins.outlines[k], model, faults);
@@ -120,19 +120,19 @@ void check_choices(const Case& c, Faults& faults) {
                                        std::to_string(c.field->terms));
 }
 
-std::vector<Fault> find_doubts(const Case& c) {
-  std::vector<Fault> doubts;
+std::vector<Fault> find_warnings(const Case& c) {
+  std::vector<Fault> warnings;
   const Model& model = c.model;
-  if (!model.terrain.closed) doubt_open_ends(model, doubts);
+  if (!model.terrain.closed) warn_of_open_ends(model, warnings);
   const double courant =
       model.time.fixed_step.value_or(0.0) * sound_speed(model) / (model.numerics.h_over_dx * model.dx);
   if (courant > 1.0)
-    doubts.push_back({"/time/fixed_step_s", "is large: sound travels " + rounded(courant) +
-                                                " smoothing lengths in it; expect divergence above 1"});
+    warnings.push_back({"/time/fixed_step_s", "is large: sound travels " + rounded(courant) +
+                                                  " smoothing lengths in it; expect divergence above 1"});
   if (c.study.sampling == Sampling::latin_hypercube && c.study.stop_half_width)
-    doubts.push_back({"/study/stop_when_ci_half_width_below_m",
-                      "cannot be kept: a Latin hypercube is one sample of a fixed size; talus study will refuse it"});
-  return doubts;
+    warnings.push_back({"/study/stop_when_ci_half_width_below_m",
+                        "cannot be kept: a Latin hypercube is one sample of a fixed size; talus study will refuse it"});
+  return warnings;
 }
 
 }  // namespace talus

@@ -1,5 +1,5 @@
 #pragma once
-// What no single key can show: whether slide, bed, walls and field fit one another.
+// Checks across keys: whether slide, bed, walls and field fit one another.
 
 #include <vector>
 
@@ -10,16 +10,16 @@
 namespace talus {
 
 /// Where the vertices of bed and outlines are written.
-struct Origins {
+struct SourceLocations {
   Vertices bed;
   std::vector<Vertices> outlines;  ///< of each slide part
 };
 
 /// Slide parts apart from one another, above the bed, between its ends; as many particles as allowed.
-void check_geometry(const Model& model, const Origins& origins, Faults& faults);
+void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults);
 /// Enough wall layers, friction where a field needs it, given coefficients as many as the field takes.
 void check_choices(const Case& c, Faults& faults);
-/// What may be meant, but often is not: an open end within reach, a wall lower than the slide, a coarse time step.
-std::vector<Fault> find_doubts(const Case& c);
+/// Legal input that is often a mistake: an open end within reach, a wall lower than the slide, a coarse time step.
+std::vector<Fault> find_warnings(const Case& c);
 
 }  // namespace talus

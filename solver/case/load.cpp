@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "case/aliases.hpp"
 #include "case/checks.hpp"
 #include "case/overrides.hpp"
 #include "case/sections.hpp"
@@ -16,29 +17,32 @@ LoadedCase load_document(Json document, const std::filesystem::path& directory,
   Faults faults;
   const std::vector<Override> applied = apply_overrides(document, overrides, faults);
   LoadedCase out;
-  Origins origins;
+  out.warnings = replace_aliases(document);
+  SourceLocations origins;
   ObjectReader root(document, "", faults);
   out.value = read_case(root, directory, origins);
   out.resolved = root.finish();
-  const auto sound = [&](std::initializer_list<const char*> pointers) {
+  const auto free_of_faults = [&](std::initializer_list<const char*> pointers) {
     for (const char* p : pointers)
       if (!faults.none_under(p)) return false;
     return true;
   };
   // A CSV fault stands at its file, not under /terrain or /slide: then bed or slide is empty.
   const bool shaped = !out.value.model.terrain.bed.empty() && !out.value.model.slide.empty();
-  if (shaped && sound({"/terrain", "/slide", "/particle_spacing_m", "/max_particles", "/walls", "/particle_placement"}))
+  if (shaped &&
+      free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/max_particles", "/walls", "/particle_placement"}))
     check_geometry(out.value.model, origins, faults);
-  if (sound({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
+  if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
   if (!faults.empty()) throw ConfigError(name_origins(faults.all(), applied));
-  out.warnings = name_origins(find_doubts(out.value), applied);
+  for (Fault& warning : find_warnings(out.value)) out.warnings.push_back(std::move(warning));
+  out.warnings = name_origins(std::move(out.warnings), applied);
   out.hash = case_hash(out.resolved);
   return out;
 }
 
 }  // namespace
 
-Case read_case(ObjectReader& in, const std::filesystem::path& directory, Origins& origins) {
+Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceLocations& origins) {
   Case c;
   Model& m = c.model;
   in.required_string("title", c.title, {1, 200}, {"One line that names the case."});

@@ -20,7 +20,7 @@ void collect(const Json& schema, const std::string& prefix, std::vector<CaseKey>
 Json case_schema() {
   Faults none;
   ObjectReader root = ObjectReader::describing(none);
-  Origins origins;
+  SourceLocations origins;
   read_case(root, "", origins);
   Json schema = {
       {"$schema", "http://json-schema.org/draft-07/schema#"},

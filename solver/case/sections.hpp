@@ -14,7 +14,7 @@ namespace talus {
 /// The whole case.
 /// @param directory  where CSV files lie
 /// @param origins    returns where the vertices of bed and slide are written
-Case read_case(ObjectReader& in, const std::filesystem::path& directory, Origins& origins);
+Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceLocations& origins);
 
 /// A material and its friction angle as written, so that a layer which inherits the angle repeats it exactly.
 struct MaterialInput : Material {

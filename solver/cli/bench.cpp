@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "case/load.hpp"
+#include "cli/help.hpp"
 #include "cli/schemas.hpp"
 #include "cli/verbs.hpp"
 #include "cli/version.hpp"
@@ -142,7 +143,9 @@ Json measure(const BenchOptions& o, const Json& document, const Setting& s) {
       simulation.step(model.time.end);
       watch.lap(taken);
     }
-    step_seconds.push_back(taken / made_here), spent += taken, steps += made_here;
+    step_seconds.push_back(taken / made_here);
+    spent += taken;
+    steps += made_here;
   }
   std::ranges::sort(step_seconds);
   const double per_step = step_seconds[step_seconds.size() / 2], evaluations = s.integrator == "rk2" ? 2.0 : 1.0;
@@ -264,29 +267,35 @@ Exit bench(BenchOptions o) {
 
 void add_bench(CLI::App& app, Action& action) {
   const auto o = std::make_shared<BenchOptions>();
-  CLI::App* verb = app.add_subcommand(
-      "bench",
-      "measure the speed of the solver on this machine; the first of each list is the base, one at a time is varied");
-  verb->add_option("case", o->case_file, "case file; otherwise the illustrative slope");
-  verb->add_option("--set", o->overrides, "override a key of the case: path.to.key=value")->allow_extra_args(false);
-  verb->add_option("--sizes", o->sizes, "numbers of particles, walls included")
+  CLI::App* verb = app.add_subcommand("bench", "Measure the speed of the solver on this machine");
+  verb->add_option("CASE", o->case_file, "Case file (JSON); default: the illustrative slope");
+  add_overrides(*verb, o->overrides);
+  const auto american = [](std::string word) { return word == "regularised" ? "regularized" : word; };
+  verb->add_option("--sizes", o->sizes,
+                   "Numbers of particles, walls included; the first is the base, from which one "
+                   "setting at a time is varied")
       ->delimiter(',')
       ->check(CLI::Range(100.0, 8e6));
-  verb->add_option("--threads", o->threads, "numbers of OpenMP threads; otherwise 1 and all")
+  verb->add_option("--threads", o->threads, "Numbers of OpenMP threads; default: 1 and all cores")
       ->delimiter(',')
       ->check(CLI::Range(1, 4096));
-  verb->add_option("--integrators", o->integrators, "rk2, leapfrog")
+  verb->add_option("--integrators", o->integrators, "Integrators")
+      ->type_name("NAME")
       ->delimiter(',')
       ->check(CLI::IsMember({"rk2", "leapfrog"}));
-  verb->add_option("--yields", o->yields, "elastic, regularized")
+  verb->add_option("--yields", o->yields, "Yield laws")
+      ->type_name("NAME")
       ->delimiter(',')
-      ->check(CLI::IsMember({"elastic", "regularized"}));
-  verb->add_option("--precisions", o->precisions, "single, double")
+      ->check(CLI::IsMember({"elastic", "regularized"}))
+      ->transform(american);
+  verb->add_option("--precisions", o->precisions, "Precisions")
+      ->type_name("NAME")
       ->delimiter(',')
       ->check(CLI::IsMember({"single", "double"}));
-  verb->add_option("--seconds", o->seconds, "wall clock of each measurement")->check(CLI::Range(0.01, 3600.0));
-  verb->add_option("--from", o->from, "simulated time before the measurement begins [s]")->check(CLI::Range(0.0, 1e6));
-  verb->add_flag("--json", o->json, "print one JSON value");
+  verb->add_option("--seconds", o->seconds, "Duration of each measurement [s]")->check(CLI::Range(0.01, 3600.0));
+  verb->add_option("--from", o->from, "Simulated time before the measurement begins [s]")->check(CLI::Range(0.0, 1e6));
+  verb->add_flag("--json", o->json, "Print the measurements as JSON");
+  set_footer(*verb, {exit_text::bad_case, exit_text::io}, {"bench --sizes 17000 --threads 1 --seconds 10"});
   verb->callback([&action, o] { action = [o] { return bench(*o); }; });
 }
 

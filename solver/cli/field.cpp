@@ -10,6 +10,7 @@
 #include <random>
 
 #include "case/load.hpp"
+#include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "cli/version.hpp"
 #include "cli/xi_file.hpp"
@@ -157,20 +158,24 @@ void add_field(CLI::App& app, Action& action) {
   auto options = std::make_shared<FieldOptions>();
   CLI::App* verb =
       app.add_subcommand("field", "Write the friction angle of one realization as .csv, .vtkhdf, .svg or .png");
-  verb->add_option("case", options->case_file, "case file (JSON)")->required();
-  verb->add_option("--out", options->out, "file to write; the ending says what; optional with --json")
+  add_case(*verb, options->case_file);
+  verb->add_option("--out", options->out, "Output file; the format is taken from the extension; optional with --json")
+      ->type_name("FILE")
       ->check(known_ending);
   auto* realization = verb->add_option("--realization", options->realization,
-                                       "index of the realization, from 0; without it the median field")
+                                       "Index of the realization, from 0; without it the median field")
                           ->check(CLI::NonNegativeNumber);
   verb->add_option("--seed", options->seed,
-                   "seed of the random field; otherwise the case's, otherwise a new one, which is told");
+                   "Seed of the random field; default: the case's, else a random one, which is "
+                   "printed");
   verb->add_option("--xi", options->xi_file,
-                   "standard normal coefficients instead of drawn ones: one a line, or a CSV column xi")
+                   "Standard normal coefficients instead of drawn ones: one per line, or a CSV column xi")
+      ->type_name("FILE")
       ->excludes(realization);
-  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")
-      ->allow_extra_args(false);
-  verb->add_flag("--json", options->json, "print a summary with the coefficients as one JSON value");
+  add_overrides(*verb, options->overrides);
+  verb->add_flag("--json", options->json, "Print a summary with the coefficients as JSON");
+  set_footer(*verb, {exit_text::bad_case, exit_text::io},
+             {"field slope.json --realization 0 --out field.svg", "field slope.json --out median.csv"});
   verb->callback([options, &action] {
     if (options->out.empty() && !options->json) throw CLI::RequiredError("--out");
     action = [options] { return field(*options); };

@@ -1,9 +1,10 @@
-// talus plot: the figures of a finished study or run again, from its files.
+// talus plot: draws the figures of a finished study or run from its files.
 
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "figures/figures.hpp"
 
@@ -40,9 +41,10 @@ Exit plot(const PlotOptions& options) {
 
 void add_plot(CLI::App& app, Action& action) {
   auto options = std::make_shared<PlotOptions>();
-  CLI::App* verb = app.add_subcommand("plot", "Draw the figures of a study or run into DIR/figures");
-  verb->add_option("directory", options->directory, "directory of a study or run")->required();
-  verb->add_flag("--json", options->json, "print the paths as JSON");
+  CLI::App* verb = app.add_subcommand("plot", "Draw the figures of a finished study or run into DIR/figures");
+  verb->add_option("DIR", options->directory, "Directory of the study or run")->required();
+  verb->add_flag("--json", options->json, "Print the paths as JSON");
+  set_footer(*verb, {exit_text::bad_case, exit_text::io}, {"plot study"});
   verb->callback([options, &action] { action = [options] { return plot(*options); }; });
 }
 

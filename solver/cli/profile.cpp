@@ -1,4 +1,4 @@
-// talus profile: the slide as a finished run left it, as numbers or as a picture.
+// talus profile: the final state of a run, as numbers or as a picture.
 
 #include "figures/profile.hpp"
 
@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "case/load.hpp"
+#include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "io/files.hpp"
 #include "io/result_json.hpp"
@@ -40,6 +41,8 @@ ordered_json columns(const Frame& frame) {
 
 Exit profile(const ProfileOptions& options) {
   const fs::path snapshots = options.directory / "snapshots.vtkhdf";
+  if (!fs::exists(snapshots))
+    throw IoError(options.directory.string() + ": not the directory of a run: it has no snapshots.vtkhdf");
   const std::size_t n = snapshot_times(snapshots).size();
   if (n == 0) throw IoError(snapshots.string() + " contains no snapshot");
   const Frame frame = read_frame(snapshots, n - 1);
@@ -68,10 +71,13 @@ std::string known_ending(const std::string& path) {
 void add_profile(CLI::App& app, Action& action) {
   auto options = std::make_shared<ProfileOptions>();
   CLI::App* verb = app.add_subcommand("profile", "Write the final profile of a run as .json, .svg or .png");
-  verb->add_option("directory", options->directory, "directory of a finished run")->required();
-  verb->add_option("--out", options->out, "output file; format is taken from the extension")
+  verb->add_option("DIR", options->directory, "Directory of a finished run")->required();
+  verb->add_option("--out", options->out, "Output file; the format is taken from the extension")
+      ->type_name("FILE")
       ->required()
       ->check(known_ending);
+  set_footer(*verb, {exit_text::bad_case, exit_text::io},
+             {"profile run --out deposit.svg", "profile run --out deposit.json"});
   verb->callback([options, &action] { action = [options] { return profile(*options); }; });
 }
 

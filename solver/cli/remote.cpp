@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "case/load.hpp"
+#include "cli/help.hpp"
 #include "cli/server.hpp"
 #include "cli/signals.hpp"
 #include "cli/verbs.hpp"
@@ -141,12 +142,13 @@ Exit cancel(const RemoteOptions& options) {
   return Exit::ok;
 }
 
-/// A subcommand with the common options.
+/// A verb with the options that all of these share.
 CLI::App* add_verb(CLI::App& app, Action& action, const char* name, const char* help,
                    const std::shared_ptr<RemoteOptions>& options, Exit (*carry_out)(const RemoteOptions&)) {
   CLI::App* verb = app.add_subcommand(name, help);
+  verb->group("Commands for a talusd server");
   add_server_options(*verb, options->server);
-  verb->add_flag("--json", options->json, "print the server's answer as JSON");
+  verb->add_flag("--json", options->json, "Print the server's answer as JSON");
   verb->callback([options, carry_out, &action] { action = [options, carry_out] { return carry_out(*options); }; });
   return verb;
 }
@@ -156,31 +158,34 @@ CLI::App* add_verb(CLI::App& app, Action& action, const char* name, const char* 
 void add_remote(CLI::App& app, Action& action) {
   const auto make = [] { return std::make_shared<RemoteOptions>(); };
   auto options = make();
-  CLI::App* verb = add_verb(app, action, "submit", "Submit a study to talusd; prints the job ID", options, submit);
-  verb->add_option("case", options->case_file, "case file (JSON); the CSV files it names are sent with it")->required();
-  verb->add_option("--realizations", options->realizations, "number of realizations; default: that of the case")
+  CLI::App* verb =
+      add_verb(app, action, "submit", "Submit a study to a talusd server; prints the job ID", options, submit);
+  verb->add_option("CASE", options->case_file, "Case file (JSON); the CSV files it names are sent along")->required();
+  verb->add_option("--realizations", options->realizations, "Number of realizations; default: the case's")
       ->check(CLI::Range(1, 1'000'000'000));
-  verb->add_option("--seed", options->seed,
-                   "seed of the random fields; default: that of the case, or one chosen by the server")
+  verb->add_option("--seed", options->seed, "Seed of the random fields; default: the case's, else the server's choice")
       ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));
-  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")
-      ->allow_extra_args(false);
-  verb->add_flag("--watch", options->watch, "wait until the job ends");
+  add_overrides(*verb, options->overrides);
+  verb->add_flag("--watch", options->watch, "Wait until the job has ended");
+  set_footer(*verb, {exit_text::bad_case, exit_text::io, exit_text::dismissed, exit_text::failed},
+             {"submit slope.json --realizations 500 --watch"});
   options = make();
-  add_verb(app, action, "status", "Show job status (all jobs if no ID is given)", options, status)
-      ->add_option("job", options->job, "job ID");
+  verb = add_verb(app, action, "status", "Show job status (all jobs if no ID is given)", options, status);
+  verb->add_option("JOB", options->job, "Job ID");
+  set_footer(*verb, {exit_text::io}, {"status", "status JOB --json"});
   options = make();
-  add_verb(app, action, "watch", "Show the progress of a job until it ends", options, watch)
-      ->add_option("job", options->job, "job ID")
-      ->required();
+  verb = add_verb(app, action, "watch", "Follow a job until it has ended", options, watch);
+  verb->add_option("JOB", options->job, "Job ID")->required();
+  set_footer(*verb, {exit_text::io, exit_text::dismissed, exit_text::failed}, {"watch JOB"});
   options = make();
-  verb = add_verb(app, action, "results", "Print the results of a job", options, results);
-  verb->add_option("job", options->job, "job ID")->required();
-  verb->add_option("--out", options->out, "output file (JSON)");
+  verb = add_verb(app, action, "results", "Show or save the results of a job", options, results);
+  verb->add_option("JOB", options->job, "Job ID")->required();
+  verb->add_option("--out", options->out, "Output file (JSON)")->type_name("FILE");
+  set_footer(*verb, {exit_text::io}, {"results JOB", "results JOB --out study.json"});
   options = make();
-  add_verb(app, action, "cancel", "Cancel a job and remove its files", options, cancel)
-      ->add_option("job", options->job, "job ID")
-      ->required();
+  verb = add_verb(app, action, "cancel", "Cancel a job and delete its files", options, cancel);
+  verb->add_option("JOB", options->job, "Job ID")->required();
+  set_footer(*verb, {exit_text::io}, {"cancel JOB"});
 }
 
 }  // namespace talus::cli

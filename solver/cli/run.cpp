@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "case/load.hpp"
+#include "cli/help.hpp"
 #include "cli/signals.hpp"
 #include "cli/verbs.hpp"
 #include "cli/version.hpp"
@@ -286,20 +287,21 @@ void add_run(CLI::App& app, Action& action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* verb =
       app.add_subcommand("run", "Run one realization: result.json, case.resolved.json, snapshots.vtkhdf, history.csv");
-  verb->add_option("case", options->case_file, "case file (JSON)")->required();
-  verb->add_option("--out", options->out, "directory for the results; created, or empty")->required();
-  verb->add_option("--realization", options->realization, "index of the realization, from 0; without it the median run")
+  add_case(*verb, options->case_file);
+  verb->add_option("--out", options->out, "Directory for the results; created, or empty")->type_name("DIR")->required();
+  verb->add_option("--realization", options->realization, "Index of the realization, from 0; without it the median run")
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--seed", options->seed,
-                   "seed of the random field; otherwise the case's, otherwise a new one, which is recorded")
+                   "Seed of the random field; default: the case's, else a random one, which is recorded")
       ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));  // what every reader of JSON keeps exact
   verb->add_option("--threads", options->threads, "OpenMP threads; the result does not depend on them")
       ->check(CLI::Range(1, 4096));
-  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")
-      ->allow_extra_args(false);
-  verb->add_flag("--resume", options->resume, "go on from the checkpoint in --out");
-  verb->add_flag("--figures", options->figures, "draw profiles at the snapshot times");
-  verb->add_flag("--json", options->json, "print result.json on stdout");
+  add_overrides(*verb, options->overrides);
+  verb->add_flag("--resume", options->resume, "Continue from the checkpoint in --out");
+  verb->add_flag("--figures", options->figures, "Draw profiles at the snapshot times");
+  verb->add_flag("--json", options->json, "Print result.json on stdout");
+  set_footer(*verb, {exit_text::bad_case, exit_text::diverged, exit_text::io, exit_text::stopped},
+             {"run slope.json --out run", "run slope.json --realization 7 --seed 42 --out run --figures"});
   verb->add_option("--perturbation", options->perturbation, "relative change of tan(phi), for noise-floor replicates")
       ->group("");
   verb->add_flag("--study-worker", options->study_worker, "quiet, and dies with its parent")->group("");

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "case/words.hpp"
+#include "cli/help.hpp"
 #include "cli/schemas.hpp"
 #include "cli/verbs.hpp"
 
@@ -18,8 +19,13 @@ std::vector<std::pair<std::string, std::string>> all_schemas() {
   return all;
 }
 
+/// Path, description and, of a choice, its words: three columns separated by tabs.
 Exit print_keys() {
-  for (const CaseKey& key : case_keys()) std::cout << key.path << "\t" << key.description << "\n";
+  for (const CaseKey& key : case_keys()) {
+    std::cout << key.path << "\t" << key.description << "\t";
+    for (const std::string& word : key.choices) std::cout << word << " ";
+    std::cout << "\n";
+  }
   return Exit::ok;
 }
 
@@ -44,6 +50,7 @@ void add_schema(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("schema", "Print the JSON Schema of a file, or list the schemas");
   verb->add_option("NAME", *name, "Schema to print; without it the names are listed");
   verb->add_flag("--keys", *keys, "List the keys of a case that --set takes, with meaning, unit, range and default");
+  set_footer(*verb, {}, {"schema", "schema case", "schema --keys"});
   verb->callback(
       [&action, name, keys] { action = [name, keys] { return *keys ? print_keys() : print_schema(*name); }; });
 }

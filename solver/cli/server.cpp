@@ -79,8 +79,12 @@ class TalusServer::Connection {
 
 void add_server_options(CLI::App& verb, ServerOptions& options) {
   options.url = "http://127.0.0.1:8080";
-  verb.add_option("--server", options.url, "URL of talusd")->envname("TALUS_SERVER")->capture_default_str();
-  verb.add_option("--token-file", options.token_file, "file with the token; default: TALUS_TOKEN");
+  verb.add_option("--server", options.url, "URL of the talusd server")
+      ->type_name("URL")
+      ->envname("TALUS_SERVER")
+      ->capture_default_str();
+  verb.add_option("--token-file", options.token_file, "File with the token; default: $TALUS_TOKEN, if set")
+      ->type_name("FILE");
 }
 
 TalusServer::TalusServer(const ServerOptions& options) : connection_(std::make_unique<Connection>(options)) {}

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "case/load.hpp"
+#include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "particles/geometry.hpp"
 #include "random_field/random_field.hpp"
@@ -18,7 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ValidateOptions {
-  std::string case_file;
+  std::filesystem::path case_file;
   std::vector<std::string> overrides;
   bool json = false;
 };
@@ -54,7 +55,7 @@ Demand measure(const Case& c) {
   return d;
 }
 
-void doubt_variance(const Demand& d, std::vector<Fault>& warnings) {
+void warn_of_lost_variance(const Demand& d, std::vector<Fault>& warnings) {
   if (!d.captured_variance || *d.captured_variance >= 0.5) return;
   char text[200];
   std::snprintf(text, sizeof text,
@@ -97,7 +98,7 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
 Exit validate(const ValidateOptions& options) try {
   LoadedCase loaded = load_case(options.case_file, options.overrides);
   const Demand demand = measure(loaded.value);
-  doubt_variance(demand, loaded.warnings);
+  warn_of_lost_variance(demand, loaded.warnings);
   options.json ? print_json(to_json(loaded, demand)) : print_text(loaded, demand);
   return Exit::ok;
 } catch (const ConfigError& e) {
@@ -110,12 +111,14 @@ Exit validate(const ValidateOptions& options) try {
 
 void add_validate(CLI::App& app, Action& action) {
   const auto options = std::make_shared<ValidateOptions>();
-  CLI::App* verb = app.add_subcommand("validate", "check a case: every fault at once, or what running it takes");
-  verb->add_option("CASE", options->case_file, "case file")->required();
-  verb->add_option("--set", options->overrides, "override a key: key.path=value (null removes it); repeatable")
-      ->take_all()
-      ->allow_extra_args(false);
-  verb->add_flag("--json", options->json, "print one JSON value");
+  CLI::App* verb = app.add_subcommand("validate",
+                                      "Check a case: list all errors with their location, or report what "
+                                      "running it takes");
+  add_case(*verb, options->case_file);
+  add_overrides(*verb, options->overrides);
+  verb->add_flag("--json", options->json, "Print the report as JSON");
+  set_footer(*verb, {exit_text::bad_case, exit_text::io},
+             {"validate slope.json", "validate slope.json --set particle_spacing_m=0.2"});
   verb->callback([&action, options] { action = [options] { return validate(*options); }; });
 }
 

@@ -1,4 +1,5 @@
 """Bash completion against the programs themselves. usage: test_completion.py TALUSD SOURCE_DIR"""
+import json
 import pathlib
 import re
 import subprocess
@@ -37,7 +38,7 @@ def options_of(*command):
 
 
 def verbs():
-    return re.findall(r"^  (\w+) ", re.split(r"(?i)subcommands:", help_of(TALUS))[1], re.M)
+    return re.findall(r"^  (\w+) ", help_of(TALUS).split("Commands:")[1], re.M)
 
 
 class Completion(unittest.TestCase):
@@ -69,11 +70,27 @@ class Completion(unittest.TestCase):
         with tempfile.TemporaryDirectory() as here:
             (pathlib.Path(here) / "study").mkdir()
             (pathlib.Path(here) / "study.json").touch()
-            self.assertEqual(complete(TALUS, "plot", "st", cwd=here), ["study/"])
+            self.assertEqual(complete(TALUS, "plot", "st", cwd=here), ["study"])
+            self.assertEqual(complete(TALUS, "stud", cwd=here), ["study"])
         self.assertEqual(complete(TALUS, "schema", ""), ["case", "result", "study"])
         self.assertEqual(complete(TALUS, "bench", "--yields", "e"), ["elastic"])
         self.assertEqual(complete(TALUS, "stats", "--quantity", "inf"), ["influence_zone_m"])
         self.assertEqual(complete(TALUS, "study", "--seed", ""), [])
+
+    def test_keys_of_a_case_and_their_choices(self):
+        document = json.loads((CASES / "illustrative.json").read_text())
+        keys = complete(TALUS, "run", "x.json", "--set", "")
+        self.assertGreater(len(keys), 80)
+        self.assertEqual(len(keys), len(set(keys)))
+        for section in ("material", "time"):
+            for key in document[section]:
+                self.assertIn(f"{section}.{key}=", keys)
+        self.assertEqual(complete(TALUS, "study", "--set", "numerics.ke"), ["numerics.kernel="])
+        # bash parts words at the equals sign
+        self.assertEqual(complete(TALUS, "study", "--set", "numerics.kernel", "="), ["cubic_spline", "wendland_c2"])
+        self.assertEqual(complete(TALUS, "study", "--set", "numerics.kernel", "=", "w"), ["wendland_c2"])
+        self.assertEqual(complete(TALUS, "study", "--set", "numerics.cfl", "=", ""), [])
+        self.assertEqual(complete(TALUS, "help", "st"), complete(TALUS, "st"))
 
     def test_words_it_lists_itself_are_known_to_the_programs(self):
         text = (SOURCE / "deploy/completion.bash").read_text()

@@ -24,7 +24,7 @@ def sections(text):
     """Heading in lower case -> pairs (left column, description) of a --help."""
     found, entries, lines = {}, [], text.splitlines()
     for line, following in zip(lines, lines[1:] + [""]):
-        if re.match(r"\w+:$", line):
+        if re.match(r"\w[\w ]*:$", line):
             entries = found.setdefault(line[:-1].lower(), [])
         elif line.startswith(" " * HELP_COLUMN):
             entries[-1][1] = line.strip()
@@ -82,7 +82,8 @@ def options(help_text):
 
 def talus_commands(talus):
     lines = []
-    for verb, _ in sections(help_of(talus))["subcommands"]:
+    found = sections(help_of(talus))
+    for verb, _ in found["commands"] + found["commands for a talusd server"]:
         text = help_of(talus, verb)
         usage = re.search(r"^Usage: (.*)$", text, re.M)[1]
         lines += [f".SS {roff(usage)}", roff(text.split("\n")[0].strip()) + "."] + options(text)

@@ -49,7 +49,7 @@ TEST(Checks, WallLayersFillTheSupport) {
   EXPECT_TRUE(sound(layers(2.0, 4)));
 }
 
-TEST(Doubts, AnOpenEndWithinReach) {
+TEST(Warnings, AnOpenEndWithinReach) {
   // Crest (5, 8) at 30 deg reaches y = 0 at x = 5 + 8/tan(30 deg) = 18.86.
   const auto far = test::load(with("/terrain/bed_m/2", {19, 0}));
   EXPECT_TRUE(far.warnings.empty());
@@ -59,18 +59,18 @@ TEST(Doubts, AnOpenEndWithinReach) {
   EXPECT_TRUE(test::load(with("/terrain/right_end", "wall", with("/terrain/bed_m/2", {18, 0}))).warnings.empty());
 }
 
-TEST(Doubts, AWallLowerThanTheSlide) {
+TEST(Warnings, AWallLowerThanTheSlide) {
   EXPECT_EQ(test::load(with("/terrain/wall_top_m", 7)).warnings.size(), 1u);
   EXPECT_EQ(test::load(with("/terrain/wall_top_m", 8)).warnings.size(), 0u);
 }
 
-TEST(Doubts, AStepInWhichSoundCrossesASmoothingLength) {
+TEST(Warnings, AStepInWhichSoundCrossesASmoothingLength) {
   const Json document = with("/numerics/sound_speed_m_s", 100);  // h = 0.75 m
   EXPECT_TRUE(test::load(with("/time/fixed_step_s", 0.0074, document)).warnings.empty());
   EXPECT_EQ(test::load(with("/time/fixed_step_s", 0.0076, document)).warnings.size(), 1u);
 }
 
-TEST(Doubts, AHypercubeThatIsToStopEarly) {
+TEST(Warnings, AHypercubeThatIsToStopEarly) {
   const Json stopping = with("/study/stop_when_ci_half_width_below_m", 0.1);
   EXPECT_TRUE(test::load(stopping).warnings.empty());
   EXPECT_EQ(test::load(with("/study/sampling", "latin_hypercube", stopping)).warnings.size(), 1u);

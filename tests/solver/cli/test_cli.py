@@ -6,6 +6,7 @@ usage: test_cli.py TALUS SOURCE_DIR [unittest arguments]; --slow-study runs the 
 import json
 import os
 import pathlib
+import re
 import resource
 import signal
 import subprocess
@@ -35,6 +36,46 @@ class Basics(Directory):
             done = talus(*arguments)
             self.assertEqual((done.returncode, done.stdout), (2, ""), arguments)
             self.assertTrue(done.stderr)
+
+    def test_a_slip_of_the_keyboard_is_told_what_was_meant(self):
+        for arguments, words in (
+            (["stdy", SLOPE], ['"stdy" is not a command', "(study?)"]),
+            (["help", "stdy"], ["(study?)"]),
+            (["run", SLOPE, "--realizations", "3"], ["not an option of talus run (--realization?)", "an option of: study"]),
+            (["run", SLOPE, "--sed", "3"], ["--sed is not an option", "(--seed?)", "talus help run"]),
+            (["study", SLOPE, "--out", self.dir / "x", "--realizations", "1.5"], ['"1.5" is not a whole number']),
+            (["--foo"], ["--foo is not an option of talus"]),
+            ([], ["a command is required"]),
+        ):
+            done = talus(*arguments)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), arguments)
+            for word in words:
+                self.assertIn(word, done.stderr, arguments)
+
+    def test_help_of_a_command_in_both_ways(self):
+        self.assertEqual(talus("help", "run").stdout, talus("run", "--help").stdout)
+        self.assertEqual(talus("help").stdout, talus("--help").stdout)
+        self.assertIn("Exit codes: 0 ok, 1 internal error, 2 usage, 3 bad case, 5 input/output\n", talus("help", "field").stdout)
+
+    def test_every_alias_works(self):
+        """The list of solver/cli/help.hpp and solver/case/aliases.hpp."""
+        declared = re.findall(r'\{"(\S+)", "(\S+)"\}', "".join(
+            (SOURCE / f"solver/{file}").read_text() for file in ("cli/help.hpp", "case/aliases.hpp")))
+        tried = [("--realisation", "--realization"), ("--realisations", "--realizations"),
+                 ("study.realisations", "study.realizations"), ("rheology.yield=regularised", "rheology.yield=regularized")]
+        self.assertEqual(sorted(declared), sorted(tried))
+        field = [talus("field", SLOPE, *COARSE, "--json", "--seed", "1", option, "2") for option in tried[0]]
+        self.assertEqual(field[0].stdout, field[1].stdout)
+        self.assertEqual(field[0].returncode, 0, field[0].stderr)
+        for spelling in (["--realisations", "1e1"], ["--realisations=10"], ["--set", "study.realisations=10"]):
+            out = self.dir / str(len(list(self.dir.iterdir())))
+            done = talus("study", SLOPE, *COARSE, "--prepare", "--out", out, *spelling)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(load(out / "plan.json")["realizations"], 10, spelling)
+        checks = [json.loads(talus("validate", SLOPE, "--json", "--set", choice).stdout) for choice in tried[3]]
+        self.assertEqual(checks[0]["hash"], checks[1]["hash"])
+        self.assertEqual([len(c["warnings"]) for c in checks], [len(checks[1]["warnings"]) + 1, len(checks[1]["warnings"])])
+        self.assertIn("rheology.yield=regularized", checks[0]["warnings"][0]["message"])
 
     def test_bad_case_is_3_and_writes_nothing(self):
         out = self.dir / "out"
