@@ -1,6 +1,7 @@
 #pragma once
 // Former and British spellings of keys and words of a case. They keep working for one version, with a warning.
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,8 +18,9 @@ struct CaseAlias {
 inline constexpr CaseAlias case_aliases[] = {{"study.realisations", "study.realizations"},
                                              {"rheology.yield=regularised", "rheology.yield=regularized"}};
 
-/// Puts the present names into a document. An alias beside its present name is left, and so reported as unknown.
+/// Puts the present names into a document and into `--set` texts. An alias beside its present name in one document is
+/// left, and so reported as unknown.
 /// @return a warning for each alias that was used
-std::vector<Fault> replace_aliases(Json& document);
+std::vector<Fault> replace_aliases(Json& document, std::vector<std::string>& overrides);
 
 }  // namespace talus

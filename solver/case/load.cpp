@@ -15,9 +15,10 @@ constexpr Names<Placement> placements[] = {{"cells", Placement::cells}, {"nodes"
 LoadedCase load_document(Json document, const std::filesystem::path& directory,
                          std::span<const std::string> overrides) {
   Faults faults;
-  const std::vector<Override> applied = apply_overrides(document, overrides, faults);
   LoadedCase out;
-  out.warnings = replace_aliases(document);
+  std::vector<std::string> texts(overrides.begin(), overrides.end());
+  out.warnings = replace_aliases(document, texts);
+  const std::vector<Override> applied = apply_overrides(document, texts, faults);
   SourceLocations origins;
   ObjectReader root(document, "", faults);
   out.value = read_case(root, directory, origins);

@@ -55,7 +55,7 @@ def spoken(spec):
     take(r":NONNEGATIVE", "0 or more")
     if found := re.search(r":\{(.*)\}", spec):
         take(r":\{(.*)\}", "one of " + ", ".join(found[1].split(",")))
-    take(r"(?:=| \[)([^\]\s]+)\]?", "default {0}")
+    take(r"(?:=| \[)(?![A-Z]+$)([^\]\s]+)\]?", "default {0}")  # but KEY=VALUE is a metavariable
     return spec.strip() + (" ..." if many else ""), remarks[::-1]
 
 
