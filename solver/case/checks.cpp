@@ -6,7 +6,7 @@
 #include "case/outline.hpp"
 #include "case/words.hpp"
 #include "particles/geometry.hpp"
-#include "simulation/simulation.hpp"
+#include "simulation/particle_setup.hpp"
 
 namespace talus {
 namespace {

@@ -43,9 +43,9 @@ struct FieldOnParticles {
 
 FieldOnParticles field_on(const ParticlePlan& plan, const Strength& strength) {
   FieldOnParticles field;
-  field.tan_phi = strength.tan_phi;
+  field.tan_phi = strength.properties.tan_phi;
   for (const SoilPoint& point : plan.soil) field.position.push_back(point.x);
-  for (const double tan_phi : strength.tan_phi) field.phi_deg.push_back(degrees(std::atan(tan_phi)));
+  for (const double tan_phi : strength.properties.tan_phi) field.phi_deg.push_back(degrees(std::atan(tan_phi)));
   return field;
 }
 

@@ -213,13 +213,13 @@ Exit run(const RunOptions& options) {
     return Exit::ok;
   }
 
-  Simulation simulation(problem.model, plan, soil_strength.tan_phi);
+  Simulation simulation(problem.model, plan, soil_strength.properties);
   const CheckpointHeader header{version(), loaded.hash, identity.seed, identity.realization, options.perturbation};
   if (!options.resume) fs::remove(checkpoint_file);  // of an unfinished run that is being started over
   const bool resumed = options.resume && fs::exists(checkpoint_file);
   double earlier = 0.0;  // wall clock of the run's earlier processes
   if (resumed) {
-    const State state = read_checkpoint(checkpoint_file, header);
+    const CheckpointState state = read_checkpoint(checkpoint_file, header);
     simulation.restore(state);
     if (const auto clock = state.reals.find("wall_clock"); clock != state.reals.end() && clock->second.size() == 1)
       earlier = clock->second[0];
@@ -228,7 +228,7 @@ Exit run(const RunOptions& options) {
   Recorder recorder(out.path(), simulation, problem.model, resumed);
   ProgressLine progress(!options.json && !options.study_worker);
   const auto checkpoint = [&] {
-    State state = simulation.state();
+    CheckpointState state = simulation.state();
     state.reals["wall_clock"] = {earlier + seconds_since(started)};
     recorder.write_history();
     recorder.settle();

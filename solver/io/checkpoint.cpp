@@ -112,7 +112,7 @@ std::string differences(const CheckpointHeader& found, const CheckpointHeader& e
 
 }  // namespace
 
-void write_checkpoint(const fs::path& path, const State& state, const CheckpointHeader& header) {
+void write_checkpoint(const fs::path& path, const CheckpointState& state, const CheckpointHeader& header) {
   const hdf5::Id file = hdf5::create_in_memory();
   write_header(file, header);
   write_arrays(file, "reals", state.reals);
@@ -122,7 +122,7 @@ void write_checkpoint(const fs::path& path, const State& state, const Checkpoint
   write_file_atomically(path, content);
 }
 
-State read_checkpoint(const fs::path& path, const CheckpointHeader& expected) {
+CheckpointState read_checkpoint(const fs::path& path, const CheckpointHeader& expected) {
   const std::string content = read_file(path, std::numeric_limits<std::size_t>::max());
   const hdf5::Id file = hdf5::open_image(checked_body(content, path), path.string());
   const auto found_format = hdf5::read_attribute<std::int64_t>(file, "format");

@@ -1,5 +1,5 @@
 #pragma once
-// Checkpoints: a State on disk, read back complete and undamaged or refused. Not thread-safe (HDF5).
+// Checkpoints: a CheckpointState on disk, read back complete and undamaged or refused. Not thread-safe (HDF5).
 //
 // A file begins with a block of 512 bytes of text (what it is, its length, the checksum of what follows), then comes
 // HDF5: it is checked before HDF5 sees it, and h5dump and h5py read it all the same, since HDF5 lets others use the
@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-#include "simulation/frame.hpp"
+#include "simulation/checkpoint_state.hpp"
 
 namespace talus {
 
@@ -27,10 +27,10 @@ struct CheckpointHeader {
 /// Writes a checkpoint atomically. Every number is restored bit for bit.
 /// @throws IoError naming the path; an older checkpoint is then untouched
 /// @throws std::invalid_argument when an array has no name, or one that HDF5 cannot store ('/', '.')
-void write_checkpoint(const std::filesystem::path& path, const State& state, const CheckpointHeader& header);
+void write_checkpoint(const std::filesystem::path& path, const CheckpointState& state, const CheckpointHeader& header);
 
 /// Reads a checkpoint of the run that `expected` describes.
 /// @throws IoError naming the path: missing, no checkpoint, truncated, damaged, or of another run (and what differs)
-State read_checkpoint(const std::filesystem::path& path, const CheckpointHeader& expected);
+CheckpointState read_checkpoint(const std::filesystem::path& path, const CheckpointHeader& expected);
 
 }  // namespace talus

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/frame.hpp"
+#include "simulation/run_result.hpp"
 
 namespace talus {
 

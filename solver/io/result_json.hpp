@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "simulation/frame.hpp"
+#include "simulation/run_result.hpp"
 
 namespace talus {
 

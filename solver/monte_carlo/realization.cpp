@@ -26,29 +26,25 @@ std::vector<double> draw(const RandomField& field, const FieldSpec& spec, const 
 
 Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study,
                   const ParticlePlan& plan, const RunIdentity& identity) {
-  Strength result;
-  std::vector<double> mu;
-  for (const SoilPoint& point : plan.soil)
-    mu.push_back(std::log(std::tan(model.materials[static_cast<std::size_t>(point.material)].phi)));
+  Strength result{.properties = material_properties(model, plan), .xi = {}, .summary = {}};
+  std::vector<double>& tan_phi = result.properties.tan_phi;
   if (field) {
     std::vector<Vec2> points;
+    std::vector<double> mu;
     for (const SoilPoint& point : plan.soil) points.push_back(point.x);
-    if (field->mu) mu.assign(plan.soil.size(), *field->mu);
+    for (const double median : tan_phi) mu.push_back(field->mu.value_or(std::log(median)));
     const RandomField random(*field, bounding_box(model.slide), model.dx);
     result.xi = draw(random, *field, study, identity);
-    result.tan_phi = lognormal(random.gaussian(points, result.xi), mu, field->sigma);
+    tan_phi = lognormal(random.gaussian(points, result.xi), mu, field->sigma);
     result.summary.captured_variance = random.captured_variance();
     result.summary.terms = static_cast<std::int64_t>(random.terms());
-  } else {
-    for (const SoilPoint& point : plan.soil)
-      result.tan_phi.push_back(std::tan(model.materials[static_cast<std::size_t>(point.material)].phi));
   }
   double sum = 0.0;
-  for (double& value : result.tan_phi) {
+  for (double& value : tan_phi) {
     value *= 1.0 + identity.perturbation;
     sum += std::atan(value);
   }
-  result.summary.mean_phi = sum / static_cast<double>(result.tan_phi.size());
+  result.summary.mean_phi = sum / static_cast<double>(tan_phi.size());
   return result;
 }
 

@@ -7,7 +7,8 @@
 
 #include "monte_carlo/study_spec.hpp"
 #include "random_field/field_spec.hpp"
-#include "simulation/simulation.hpp"
+#include "simulation/particle_setup.hpp"
+#include "simulation/run_result.hpp"
 
 namespace talus {
 
@@ -21,8 +22,8 @@ struct RunIdentity {
 
 /// The strength of every soil particle.
 struct Strength {
-  std::vector<double> tan_phi;  ///< by soil particle of the plan [-]
-  std::vector<double> xi;       ///< coefficients used; empty without a random field
+  SoilProperties properties;  ///< of the soil particles, in the order of the plan
+  std::vector<double> xi;     ///< coefficients used; empty without a random field
   FieldSummary summary;
 };
 

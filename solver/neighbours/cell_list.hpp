@@ -97,6 +97,11 @@ class CellList {
   std::vector<std::uint32_t> order_;
 };
 
+/// The cells of the two kinds of particles.
+struct ParticleCells {
+  CellList soil, walls;
+};
+
 /// values[k] <- values[order[k]], through scratch memory that arrays of every kind share and that is kept.
 template <class T>
 void permute(std::vector<T>& values, std::span<const std::uint32_t> order, std::vector<double>& scratch) {

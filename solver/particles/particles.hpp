@@ -37,30 +37,40 @@ struct Soil {
   Sym2 stress(std::size_t i) const { return {sxx[i], syy[i], sxy[i]}; }
 };
 
-/// The one list of the soil's arrays of doubles, in three parts; each calls f(name, array).
+/// The one list of the soil's arrays of doubles, in three parts; each function calls f(name, array).
 /// State: what a particle is.
 template <class S, class F>
 void for_each_state(S& s, F&& f) {
-  f("x", s.x), f("y", s.y), f("vx", s.vx), f("vy", s.vy), f("rho", s.rho), f("txx", s.txx), f("tyy", s.tyy),
-      f("txy", s.txy);
-  f("m", s.m), f("tan_phi", s.tan_phi);
+  f("x", s.x);
+  f("y", s.y);
+  f("vx", s.vx);
+  f("vy", s.vy);
+  f("rho", s.rho);
+  f("txx", s.txx);
+  f("tyy", s.tyy);
+  f("txy", s.txy);
+  f("m", s.m);
+  f("tan_phi", s.tan_phi);
 }
 /// Rates of the last evaluation: the leapfrog predicts with them.
 template <class S, class F>
 void for_each_rate(S& s, F&& f) {
-  f("ax", s.ax), f("ay", s.ay), f("drho", s.drho), f("dtxx", s.dtxx), f("dtyy", s.dtyy), f("dtxy", s.dtxy);
+  f("ax", s.ax);
+  f("ay", s.ay);
+  f("drho", s.drho);
+  f("dtxx", s.dtxx);
+  f("dtyy", s.dtyy);
+  f("dtxy", s.dtxy);
 }
 /// What an evaluation derives for pictures and walls.
 template <class S, class F>
 void for_each_derived(S& s, F&& f) {
-  f("gamma_dot", s.gamma_dot), f("p", s.p), f("sxx", s.sxx), f("syy", s.syy), f("sxy", s.sxy);
+  f("gamma_dot", s.gamma_dot);
+  f("p", s.p);
+  f("sxx", s.sxx);
+  f("syy", s.syy);
+  f("sxy", s.sxy);
 }
-/// All of them.
-template <class S, class F>
-void for_each_real(S& s, F&& f) {
-  for_each_state(s, f), for_each_rate(s, f), for_each_derived(s, f);
-}
-
 /// Wall particles; fixed, sorted by cell once.
 struct WallParticles {
   std::vector<double> x, y;           ///< position [m]
@@ -80,8 +90,11 @@ struct WallParticles {
 /// The arrays of the walls that evaluations write.
 template <class W, class F>
 void for_each_wall_real(W& w, F&& f) {
-  f("wall_p", w.p), f("wall_sxx", w.sxx), f("wall_syy", w.syy), f("wall_sxy", w.sxy),
-      f("wall_compression", w.compression);
+  f("wall_p", w.p);
+  f("wall_sxx", w.sxx);
+  f("wall_syy", w.syy);
+  f("wall_sxy", w.sxy);
+  f("wall_compression", w.compression);
 }
 
 }  // namespace talus

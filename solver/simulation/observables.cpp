@@ -73,7 +73,10 @@ double farthest(const Soil& soil) { return *std::max_element(soil.x.begin(), soi
 Vec2 centre_of_mass(const Soil& soil) {
   Vec2 sum;
   double mass = 0.0;
-  for (const auto i : by_id(soil)) sum += soil.m[i] * soil.position(i), mass += soil.m[i];
+  for (const auto i : by_id(soil)) {
+    sum += soil.m[i] * soil.position(i);
+    mass += soil.m[i];
+  }
   return (1.0 / mass) * sum;
 }
 
@@ -81,12 +84,6 @@ double kinetic_energy(const Soil& soil) {
   double energy = 0.0;
   for (const auto i : by_id(soil)) energy += 0.5 * soil.m[i] * norm2(soil.velocity(i));
   return energy;
-}
-
-Vec2 linear_momentum(const Soil& soil) {
-  Vec2 sum;
-  for (const auto i : by_id(soil)) sum += soil.m[i] * soil.velocity(i);
-  return sum;
 }
 
 double rms_speed(const Soil& soil) {
@@ -108,14 +105,14 @@ Measures measure_fronts(const Soil& soil, double left, double dx) {
 
 std::string digest(const Soil& soil) {
   std::uint64_t hash = 14695981039346656037ull;
-  const auto eat = [&](double value) {
+  const auto update = [&](double value) {
     auto bits = std::bit_cast<std::uint64_t>(value);
     for (int byte = 0; byte < 8; ++byte, bits >>= 8) hash = (hash ^ (bits & 0xff)) * 1099511628211ull;
   };
   for (const auto i : by_id(soil))
     for (const double value :
          {soil.x[i], soil.y[i], soil.vx[i], soil.vy[i], soil.rho[i], soil.txx[i], soil.tyy[i], soil.txy[i]})
-      eat(value);
+      update(value);
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
   return text;

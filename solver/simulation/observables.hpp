@@ -5,7 +5,7 @@
 #include <string>
 
 #include "particles/particles.hpp"
-#include "simulation/frame.hpp"
+#include "simulation/run_result.hpp"
 
 namespace talus {
 
@@ -19,8 +19,6 @@ double farthest(const Soil& soil);
 Vec2 centre_of_mass(const Soil& soil);
 /// sum m v^2 / 2 [J/m].
 double kinetic_energy(const Soil& soil);
-/// sum m v [kg/s per m of width].
-Vec2 linear_momentum(const Soil& soil);
 /// sqrt(2 E/M) [m/s].
 double rms_speed(const Soil& soil);
 /// max |v| over the active soil [m/s].

@@ -123,13 +123,13 @@ HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& 
   }
 }
 
-HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double step, bool middle,
-                               Chunk chunk) {
+HWY_ATTR StepExtrema move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double step,
+                                    bool midpoint_velocity, Chunk chunk) {
   const D d;
   const Packer packer(f, k);
   const Wide dt = each(step), half = each(0.5), zero = each(0.0);
-  V way2 = hn::Zero(d), acceleration2 = hn::Zero(d);
-  Wide speed2 = zero, moved2 = zero, lightest = each(1e300), unsound = zero, leftmost = each(1e300),
+  V displacement2 = hn::Zero(d), acceleration2 = hn::Zero(d);
+  Wide speed2 = zero, moved2 = zero, min_density = each(1e300), nonfinite = zero, leftmost = each(1e300),
        rightmost = each(-1e300);
   for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
     const std::size_t count = std::min(chunk.end - i, lanes);
@@ -148,25 +148,27 @@ HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil
     s.rho = move_with(soil.rho, f.soil.drho);
     move_with(soil.txx, f.soil.dtxx), move_with(soil.tyy, f.soil.dtyy), move_with(soil.txy, f.soil.dtxy);
     Wide vx = half * (old_vx + s.vx), vy = half * (old_vy + s.vy);
-    if (middle) {
+    if (midpoint_velocity) {
       V x, y, middle_vx, middle_vy;
       load_groups(f.soil.motion.data() + 4 * i, count, x, y, middle_vx, middle_vy);
       vx = wide(middle_vx), vy = wide(middle_vy);
     }
     s.x = move(soil.x, vx), s.y = move(soil.y, vy);
     packer.pack(f, k, soil, s, i, count);
-    const auto gone_since = [&](const std::vector<float>& from, Wide to) HWY_ATTR {
+    const auto moved_from = [&](const std::vector<float>& from, Wide to) HWY_ATTR {
       HWY_ALIGN float buffer[lanes] = {};
       std::copy_n(from.data() + i, count, buffer);
       return to - wide(hn::Load(d, buffer));
     };
-    const Wide dx = gone_since(soil.x_sorted, s.x), dy = gone_since(soil.y_sorted, s.y);
+    const Wide dx = moved_from(soil.x_sorted, s.x), dy = moved_from(soil.y_sorted, s.y);
     const V vx_n = narrow(vx), vy_n = narrow(vy);
-    V way2_i = hn::MulAdd(vx_n, vx_n, hn::Mul(vy_n, vy_n)), acceleration2_i = hn::MulAdd(ax, ax, hn::Mul(ay, ay));
+    V displacement2_i = hn::MulAdd(vx_n, vx_n, hn::Mul(vy_n, vy_n)),
+      acceleration2_i = hn::MulAdd(ax, ax, hn::Mul(ay, ay));
     Wide speed2_i = s.vx * s.vx + s.vy * s.vy, moved2_i = dx * dx + dy * dy;
     if (count < lanes) {
       const M some = hn::FirstN(d, count);
-      way2_i = hn::IfThenElseZero(some, way2_i), acceleration2_i = hn::IfThenElseZero(some, acceleration2_i);
+      displacement2_i = hn::IfThenElseZero(some, displacement2_i),
+      acceleration2_i = hn::IfThenElseZero(some, acceleration2_i);
       // Lanes without a particle, or with one of another thread's, repeat the first one.
       for (Wide* v : {&s.rho, &s.x, &speed2_i, &moved2_i}) {
         HWY_ALIGN double values[lanes];
@@ -175,20 +177,20 @@ HWY_ATTR Motion move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil
         *v = load(values, lanes);
       }
     }
-    way2 = hn::Max(way2, way2_i), acceleration2 = hn::Max(acceleration2, acceleration2_i);
-    speed2 = max(speed2, speed2_i), moved2 = max(moved2, moved2_i), lightest = min(lightest, s.rho);
+    displacement2 = hn::Max(displacement2, displacement2_i), acceleration2 = hn::Max(acceleration2, acceleration2_i);
+    speed2 = max(speed2, speed2_i), moved2 = max(moved2, moved2_i), min_density = min(min_density, s.rho);
     leftmost = min(leftmost, s.x), rightmost = max(rightmost, s.x);
-    unsound = unsound + zero * (speed2_i + moved2_i + s.rho);  // stays zero unless something is not finite
+    nonfinite = nonfinite + zero * (speed2_i + moved2_i + s.rho);  // stays zero unless something is not finite
   }
   const auto root = [&](V squares)
                         HWY_ATTR { return std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, squares)))); };
-  return {step * root(way2),
+  return {step * root(displacement2),
           root(acceleration2),
           std::sqrt(largest(speed2)),
           std::sqrt(largest(moved2)),
           smallest(leftmost),
           largest(rightmost),
-          total(unsound) == 0.0 && smallest(lightest) > 0.0};
+          total(nonfinite) == 0.0 && smallest(min_density) > 0.0};
 }
 
 }  // namespace talus::HWY_NAMESPACE
@@ -204,8 +206,9 @@ void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double a
   HWY_DYNAMIC_DISPATCH(pack_soil_loop)(f, k, soil, ahead, chunk);
 }
 
-Motion move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, bool middle, Chunk chunk) {
-  return HWY_DYNAMIC_DISPATCH(move_soil_loop)(f, k, soil, dt, middle, chunk);
+StepExtrema move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, bool midpoint_velocity,
+                      Chunk chunk) {
+  return HWY_DYNAMIC_DISPATCH(move_soil_loop)(f, k, soil, dt, midpoint_velocity, chunk);
 }
 
 void pack_walls(PackedFlow& f, const WallParticles& walls) {

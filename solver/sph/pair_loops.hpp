@@ -2,9 +2,7 @@
 // The right-hand side in vectors of single precision (Highway, chosen for the processor at run time). The plain
 // double-precision loops in right_hand_side.cpp are its oracle.
 
-#include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +11,7 @@
 #include "sph/cluster_list.hpp"
 #include "sph/flow_constants.hpp"
 #include "sph/packed.hpp"
+#include "sph/step_extrema.hpp"
 
 namespace talus {
 
@@ -55,26 +54,9 @@ void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& wall
 /// Second pass over some of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included.
 void momentum_pass(PackedFlow& f, const FlowConstants& k, Chunk clusters);
 
-/// What a step made of the particles.
-struct Motion {
-  double way = 0.0;           ///< farthest that one went [m]
-  double acceleration = 0.0;  ///< largest, of the last evaluation [m/s2]
-  double speed = 0.0;         ///< largest, now [m/s]
-  double moved = 0.0;         ///< farthest from where one stood at the last sort [m]
-  double leftmost = std::numeric_limits<double>::infinity(),
-         rightmost = -leftmost;  ///< smallest and largest x, now [m]
-  bool sound = true;             ///< all finite, all densities positive
-
-  /// The extremes of two lots of particles.
-  Motion with(const Motion& b) const {
-    return {std::max(way, b.way),     std::max(acceleration, b.acceleration), std::max(speed, b.speed),
-            std::max(moved, b.moved), std::min(leftmost, b.leftmost),         std::max(rightmost, b.rightmost),
-            sound && b.sound};
-  }
-};
-
 /// Moves soil particles on by dt [s] at the present rates, positions with the velocities of the last evaluation
-/// (`middle`) or with the mean of the old and the new ones, and packs the outcome.
-Motion move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, bool middle, Chunk chunk);
+/// (`midpoint_velocity`) or with the mean of the old and the new ones, and packs the outcome.
+StepExtrema move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, bool midpoint_velocity,
+                      Chunk chunk);
 
 }  // namespace talus

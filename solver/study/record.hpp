@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "simulation/frame.hpp"
+#include "simulation/run_result.hpp"
 
 namespace talus {
 

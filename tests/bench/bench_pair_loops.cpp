@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
-#include "integrate/integrator.hpp"
 #include "random_soil.hpp"
+#include "sph/pair_loops.hpp"
 
 namespace talus {
 namespace {

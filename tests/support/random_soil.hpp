@@ -5,9 +5,10 @@
 #include <cstdint>
 #include <random>
 
+#include "integrate/vectorised_flow.hpp"
 #include "neighbours/cell_list.hpp"
+#include "soil_arrays.hpp"
 #include "sph/right_hand_side.hpp"
-#include "sph/vectorised_flow.hpp"
 
 namespace talus::testing_support {
 
@@ -49,9 +50,9 @@ inline void evaluate(const FlowConstants& k, Soil& soil, WallParticles& walls, c
                      const CellList& wall_cells) {
   if (!VectorisedFlow::serves(k.numerics)) return RightHandSide(k).evaluate(soil, walls, soil_cells, wall_cells);
   VectorisedFlow flow(k, soil);
-  flow.renew(soil, walls, soil_cells, wall_cells, 0.0, 0.0);
+  flow.rebuild_neighbour_lists(soil, walls, {soil_cells, wall_cells}, 0.0, 0.0);
   flow.evaluate(soil, walls, 0.0, true);
-  flow.unpack(soil);
+  flow.read_evaluation(soil, soil);
 }
 
 inline FlowConstants constants(double dx, Vec2 g = {0.0, -9.81},

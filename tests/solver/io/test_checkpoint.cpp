@@ -24,7 +24,7 @@ const CheckpointHeader header = {.talus_version = "1.2.3",
                                  .realization = 7,
                                  .perturbation = 1e-6};
 
-State sample_state() {
+CheckpointState sample_state() {
   using Limits = std::numeric_limits<double>;
   return {.reals = {{"velocity_x",
                      {0.0, -0.0, 1.0 / 3.0, Limits::denorm_min(), -Limits::min(), Limits::max(), Limits::infinity(),
@@ -42,7 +42,7 @@ std::vector<std::uint64_t> bits(const std::vector<double>& values) {
   return all;
 }
 
-void expect_equal(const State& a, const State& b) {
+void expect_equal(const CheckpointState& a, const CheckpointState& b) {
   EXPECT_EQ(a.integers, b.integers);
   ASSERT_EQ(a.reals.size(), b.reals.size());
   for (const auto& [name, values] : a.reals) {
@@ -62,8 +62,8 @@ TEST(Checkpoint, ComesBackBitForBit) {
   const TemporaryDirectory dir;
   write_checkpoint(dir / "c", sample_state(), header);
   expect_equal(read_checkpoint(dir / "c", header), sample_state());
-  write_checkpoint(dir / "c", State{}, header);
-  expect_equal(read_checkpoint(dir / "c", header), State{});
+  write_checkpoint(dir / "c", CheckpointState{}, header);
+  expect_equal(read_checkpoint(dir / "c", header), CheckpointState{});
 }
 
 TEST(Checkpoint, OfTheSameStateIsTheSameFile) {
@@ -158,7 +158,7 @@ TEST(Checkpoint, LeavesTheOldOneWhenTheNewOneDoesNotFit) {
   write_checkpoint(dir / "c", sample_state(), header);
   {
     const test::FileSizeLimit limit(megabyte);
-    State large;
+    CheckpointState large;
     large.reals["x"].resize(megabyte / sizeof(double));
     EXPECT_NE(io_error([&] { write_checkpoint(dir / "c", large, header); }).find("File too large"), std::string::npos);
   }
@@ -169,7 +169,7 @@ TEST(Checkpoint, LeavesTheOldOneWhenTheNewOneDoesNotFit) {
 TEST(Checkpoint, RefusesNamesThatHdf5CannotStore) {
   const TemporaryDirectory dir;
   for (const char* name : {"", ".", "a/b"}) {
-    State state;
+    CheckpointState state;
     state.integers[name] = {1};
     EXPECT_THROW(write_checkpoint(dir / "c", state, header), std::invalid_argument) << name;
   }

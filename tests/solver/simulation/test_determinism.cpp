@@ -69,7 +69,7 @@ TEST(Determinism, ListsOfNeighboursAreRenewedBeforeTheyMissAny) {
 TEST(Determinism, AStateOfAnotherModelIsRefused) {
   Simulation coarse(collapse(0.1), plan_particles(collapse(0.1))), fine(collapse(0.05), plan_particles(collapse(0.05)));
   EXPECT_THROW(fine.restore(coarse.state()), IoError);
-  State spoilt = fine.state();
+  CheckpointState spoilt = fine.state();
   spoilt.integers["counters"][0] += 1;
   EXPECT_THROW(fine.restore(spoilt), IoError);
 }

@@ -31,7 +31,7 @@ bool has_fused_multiply_add() { return std::string(pair_loops_target()).find("AV
 
 Simulation simulation_of(const Case& c, const RunIdentity& identity) {
   const ParticlePlan plan = plan_particles(c.model);
-  return {c.model, plan, strength(c.model, c.field, c.study, plan, identity).tan_phi};
+  return {c.model, plan, strength(c.model, c.field, c.study, plan, identity).properties};
 }
 
 void finish(Simulation& simulation, const Case& c) {

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "closeness.hpp"
+#include "integrate/vectorised_flow.hpp"
 #include "random_soil.hpp"
-#include "sph/vectorised_flow.hpp"
 
 namespace talus {
 namespace {
@@ -39,14 +39,14 @@ TEST(VectorisedFlow, ListsReachAsFarAsParticlesMayHaveGone) {
   const CellList soil_cells = sorted(soil, 2 * k.h + moved + way), wall_cells = sorted(walls, 2 * k.h);
   displace(soil, moved, 1);
   VectorisedFlow flow(k, soil);
-  flow.renew(soil, walls, soil_cells, wall_cells, moved, way);
+  flow.rebuild_neighbour_lists(soil, walls, {soil_cells, wall_cells}, moved, way);
   displace(soil, way, 2);
   flow.state_changed();
   Soil plain = soil;
   WallParticles plain_walls = walls;
   RightHandSide(k).evaluate(plain, plain_walls, soil_cells, wall_cells);
   flow.evaluate(soil, walls, 0.0, true);
-  flow.unpack(soil);
+  flow.read_evaluation(soil, soil);
   expect_close(soil.drho, plain.drho, 2e-6, "drho");
   expect_close(soil.ax, plain.ax, 2e-6, "ax");
   expect_close(walls.p, plain_walls.p, 2e-6, "wall p");
@@ -130,12 +130,12 @@ TEST(VectorisedFlow, FollowsParticlesThatChangePlaces) {
   no_cells.build({}, {}, 1.0);
   const CellList cells = sorted(soil, 2 * k.h);
   VectorisedFlow flow(k, soil);
-  flow.renew(soil, none, cells, no_cells, 0.0, 0.0);
+  flow.rebuild_neighbour_lists(soil, none, {cells, no_cells}, 0.0, 0.0);
   flow.evaluate(soil, none, 0.0, true);
   Soil before, after;
-  flow.unpack(before);
-  flow.swap(3, 100);
-  flow.unpack(after);
+  flow.read_evaluation(soil, before);
+  flow.swap_rates(soil, 3, 100);
+  flow.read_evaluation(soil, after);
   const auto expect_moved = [&](const char* name, const auto& array) {
     for_each_real(after, [&](const std::string& other, const auto& moved) {
       if (other != name) return;
@@ -150,9 +150,9 @@ TEST(VectorisedFlow, FollowsParticlesThatChangePlaces) {
   std::vector<std::uint32_t> order(soil.size());
   std::iota(order.rbegin(), order.rend(), 0u);
   std::vector<double> scratch;
-  flow.permute(order, scratch);
+  flow.permute_rates(soil, order, scratch);
   Soil reversed;
-  flow.unpack(reversed);
+  flow.read_evaluation(soil, reversed);
   EXPECT_EQ(reversed.ay[0], after.ay.back());
   EXPECT_EQ(reversed.dtxy[5], after.dtxy[after.dtxy.size() - 6]);
 }

@@ -1,0 +1,96 @@
+#include "simulation/checkpoint_state.hpp"
+
+#include <string>
+
+#include "math/error.hpp"
+#include "simulation/simulation.hpp"
+
+namespace talus {
+namespace {
+
+/// Optional lengths and times are stored as numbers; those that are unset as a negative one.
+double stored(std::optional<double> value) { return value.value_or(-1.0); }
+std::optional<double> restored(double value) { return value < 0.0 ? std::nullopt : std::optional(value); }
+
+[[noreturn]] void refuse(const std::string& why) {
+  throw IoError("the checkpoint does not belong to this case: " + why);
+}
+
+/// The array of that name. @throws IoError unless it has n values
+template <class T>
+const std::vector<T>& array_of(const std::map<std::string, std::vector<T>>& arrays, const std::string& name,
+                               std::size_t n) {
+  const auto found = arrays.find(name);
+  if (found == arrays.end() || found->second.size() != n) refuse("'" + name + "' differs");
+  return found->second;
+}
+
+}  // namespace
+
+CheckpointState Simulation::state() const {
+  CheckpointState s;
+  const auto save = [&](const char* name, const auto& array) { s.reals[name].assign(array.begin(), array.end()); };
+  Soil evaluated;
+  flow_->read_evaluation(soil_, evaluated);
+  for_each_state(soil_, save);
+  for_each_rate(evaluated, save);
+  for_each_derived(evaluated, save);
+  save("x_sorted", soil_.x_sorted);
+  save("y_sorted", soil_.y_sorted);
+  for_each_wall_real(walls_, save);
+  s.reals["scalars"] = {time_,
+                        peak_speed_,
+                        max_speed_,
+                        max_acceleration_,
+                        stored(rest_rule_.slow_since()),
+                        stored(neighbours_.moved_since_sort())};
+  s.integers["material"].assign(soil_.material.begin(), soil_.material.end());
+  s.integers["id"].assign(soil_.id.begin(), soil_.id.end());
+  s.integers["penetrated"].assign(crossings_.seen().begin(), crossings_.seen().end());
+  s.integers["counters"] = {static_cast<std::int64_t>(soil_.n_active), steps_, evaluations_};
+  return s;
+}
+
+void Simulation::restore(const CheckpointState& state) {
+  const auto n = soil_.size();
+  const auto load = [&](const char* name, auto& array) {
+    const auto& saved = array_of(state.reals, name, n);
+    array.assign(saved.begin(), saved.end());
+  };
+  Soil evaluated;
+  for_each_state(soil_, load);
+  for_each_rate(evaluated, load);
+  for_each_derived(evaluated, load);
+  load("x_sorted", soil_.x_sorted);
+  load("y_sorted", soil_.y_sorted);
+  flow_->write_evaluation(soil_, evaluated);
+  for_each_wall_real(walls_, [&](const char* name, auto& array) { array = array_of(state.reals, name, array.size()); });
+
+  const auto& material = array_of(state.integers, "material", n);
+  const auto& id = array_of(state.integers, "id", n);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (id[i] < 0 || id[i] >= static_cast<std::int64_t>(n) || material[i] < 0 ||
+        material[i] >= static_cast<std::int64_t>(model_.materials.size()))
+      refuse("identities out of range");
+    soil_.material[i] = static_cast<std::int32_t>(material[i]);
+    soil_.id[i] = static_cast<std::int32_t>(id[i]);
+  }
+  const auto& penetrated = array_of(state.integers, "penetrated", n);
+  crossings_.restore({penetrated.begin(), penetrated.end()});
+
+  const auto& counters = array_of(state.integers, "counters", 3);
+  if (counters[0] < 0 || counters[0] > static_cast<std::int64_t>(n)) refuse("more active particles than there are");
+  soil_.n_active = static_cast<std::size_t>(counters[0]);
+  steps_ = counters[1];
+  evaluations_ = counters[2];
+
+  const auto& scalars = array_of(state.reals, "scalars", 6);
+  time_ = scalars[0];
+  peak_speed_ = scalars[1];
+  max_speed_ = scalars[2];
+  max_acceleration_ = scalars[3];
+  rest_rule_.restore(restored(scalars[4]));
+  neighbours_.restore(restored(scalars[5]), soil_, walls_, *flow_);
+}
+
+}  // namespace talus

@@ -1,0 +1,113 @@
+#include "simulation/particle_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "math/error.hpp"
+
+namespace talus {
+
+ParticlePlan plan_particles(const Model& model) {
+  double estimate = 0.0;
+  for (const SlidePart& part : model.slide) estimate += area(part.outline) / (model.dx * model.dx);
+  const Polyline wall = wall_line(model.terrain, model.dx, model.placement);
+  estimate += model.walls.layers * wall.length() / model.dx;
+  if (estimate > static_cast<double>(model.max_particles))
+    throw ConfigError("/particle_spacing_m", "about " + std::to_string(static_cast<std::int64_t>(estimate)) +
+                                                 " particles, more than the limit of " +
+                                                 std::to_string(model.max_particles) +
+                                                 " (max_particles); use a larger spacing");
+  ParticlePlan plan{fill_slide(model.slide, model.terrain, model.dx, model.placement),
+                    fill_walls(wall, model.dx, model.walls.layers)};
+  if (plan.soil.empty())
+    throw ConfigError("/particle_spacing_m", "no soil particle fits into the slide; use a smaller spacing");
+  return plan;
+}
+
+SoilProperties material_properties(const Model& model, const ParticlePlan& plan) {
+  SoilProperties properties;
+  for (const SoilPoint& point : plan.soil)
+    properties.tan_phi.push_back(std::tan(model.materials[static_cast<std::size_t>(point.material)].phi));
+  return properties;
+}
+
+double fall_height(const Model& model) {
+  const Box box = bounding_box(model.slide);
+  double lowest = box.lo.y;
+  for (const Vec2& v : model.terrain.bed) lowest = std::min(lowest, v.y);
+  return box.hi.y - lowest;
+}
+
+double sound_speed(const Model& model) {
+  return model.numerics.c_s.value_or(10.0 * std::sqrt(2.0 * norm(model.g) * fall_height(model)));
+}
+
+FlowConstants flow_constants(const Model& model) {
+  const double c_s = sound_speed(model);
+  return {model.numerics.h_over_dx * model.dx,
+          model.dx,
+          c_s,
+          model.g,
+          model.rheology,
+          model.numerics,
+          model.walls,
+          point_laws(model.materials, model.rheology, c_s)};
+}
+
+StepBounds step_bounds(const Model& model, const FlowConstants& k) {
+  StepBounds bounds{model.numerics.cfl, k.h, k.c_s, 0.0};
+  for (const PointLaw& law : k.laws) {
+    if (model.rheology.yield == Yield::elastic)
+      bounds.c = std::max(bounds.c, std::sqrt(k.c_s * k.c_s + 4.0 / 3.0 * law.G / law.eos.rho0));
+    bounds.nu = std::max(bounds.nu, law.bingham.eta / law.eos.rho0);
+  }
+  return bounds;
+}
+
+double first_step(const Model& model) {
+  if (model.time.fixed_step) return *model.time.fixed_step;
+  const double dt = courant_step(step_bounds(model, flow_constants(model)), 0.0, norm(model.g));
+  return model.time.max_step ? std::min(dt, *model.time.max_step) : dt;
+}
+
+Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& plan, const SoilProperties& properties) {
+  const std::vector<SoilPoint>& points = plan.soil;
+  const bool loaded = model.numerics.initial_pressure == InitialPressure::hydrostatic;
+  Soil soil;
+  for_each_state(soil, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
+  soil.tan_phi = properties.tan_phi;
+  soil.x_sorted.resize(points.size());
+  soil.y_sorted.resize(points.size());
+  soil.material.resize(points.size());
+  soil.id.resize(points.size());
+  soil.n_active = points.size();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto material = static_cast<std::size_t>(points[i].material);
+    const double p = loaded ? overburden(model.slide, model.materials, points[i].x) * std::abs(model.g.y) : 0.0;
+    soil.x[i] = points[i].x.x;
+    soil.y[i] = points[i].x.y;
+    soil.rho[i] = k.laws[material].eos.density(p);
+    soil.m[i] = model.materials[material].rho0 * model.dx * model.dx;
+    soil.material[i] = points[i].material;
+    soil.id[i] = static_cast<std::int32_t>(i);
+  }
+  return soil;
+}
+
+WallParticles make_walls(const std::vector<WallPoint>& points, double dx) {
+  WallParticles walls;
+  walls.volume = dx * dx;
+  for (const WallPoint& w : points) {
+    walls.x.push_back(w.x.x);
+    walls.y.push_back(w.x.y);
+    walls.nx.push_back(w.n.x);
+    walls.ny.push_back(w.n.y);
+    walls.depth.push_back(w.depth);
+  }
+  for_each_wall_real(walls, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
+  return walls;
+}
+
+}  // namespace talus

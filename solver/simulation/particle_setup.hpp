@@ -1,0 +1,50 @@
+#pragma once
+// From a model to particles at rest, and the constants and scales that follow from it.
+
+#include <vector>
+
+#include "integrate/time_step.hpp"
+#include "particles/geometry.hpp"
+#include "particles/particles.hpp"
+#include "particles/walls.hpp"
+#include "simulation/model.hpp"
+#include "sph/flow_constants.hpp"
+
+namespace talus {
+
+/// Where the particles of a model start.
+struct ParticlePlan {
+  std::vector<SoilPoint> soil;
+  std::vector<WallPoint> walls;
+};
+/// Fills the slide and lines the walls.
+/// @throws ConfigError when there is no soil particle, or more particles than Model::max_particles
+ParticlePlan plan_particles(const Model& model);
+
+/// Properties of the soil particles of a plan, in its order. Cohesion and viscosity belong to the material: they do not
+/// vary within one.
+struct SoilProperties {
+  std::vector<double> tan_phi;  ///< tangent of the friction angle [-], >= 0
+};
+/// The properties that the materials give.
+SoilProperties material_properties(const Model& model, const ParticlePlan& plan);
+
+/// Fall height H [m]: highest point of the slide over the lowest point of bed and slide; sets the scale sqrt(2 g H) of
+/// speed.
+double fall_height(const Model& model);
+/// c_s of the model, 10 sqrt(2 g H) unless given [m/s].
+double sound_speed(const Model& model);
+FlowConstants flow_constants(const Model& model);
+/// What bounds the time step; the compression wave is that of the stiffest material: sqrt(c_s^2 + 4/3 G/rho0) with the
+/// elastic law, c_s otherwise.
+StepBounds step_bounds(const Model& model, const FlowConstants& k);
+/// First time step of the model [s], to estimate the number of steps.
+double first_step(const Model& model);
+
+/// The soil of a plan at rest, its density that of the initial pressure. The arrays of the state alone are filled.
+/// @param properties  as many values as the plan has soil particles
+Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& plan, const SoilProperties& properties);
+/// Wall particles without stress, in the order of the plan.
+WallParticles make_walls(const std::vector<WallPoint>& points, double dx);
+
+}  // namespace talus

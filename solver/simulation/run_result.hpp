@@ -1,0 +1,58 @@
+#pragma once
+// The outcome of a run, and the rows of its history.
+
+#include <cstdint>
+#include <string>
+
+namespace talus {
+
+/// Where the slide ended; every x is measured from the left boundary. [m]
+struct Measures {
+  double influence_zone = 0.0;    ///< farthest soil particle, the paper's measure
+  double front_connected = 0.0;   ///< farthest particle of the largest body linked by gaps of at most 1.5 dx
+  double front_mass_99 = 0.0;     ///< beyond it lies 1 % of the mass
+  double front_mass_999 = 0.0;    ///< beyond it lies 0.1 % of the mass
+  double centre_of_mass_x = 0.0;  ///< mean x of the mass
+};
+
+/// The random field of a run in three numbers.
+struct FieldSummary {
+  double captured_variance = 0.0;  ///< share of the variance that the truncated expansion carries [-]
+  double mean_phi = 0.0;           ///< mean over the soil particles of the friction angle [rad]
+  std::int64_t terms = 0;          ///< coefficients used
+};
+
+/// Why a run ended.
+enum class Ending { end_time, at_rest, interrupted };
+
+/// The outcome of a run.
+struct RunResult {
+  Measures measures;
+  Ending ending = Ending::end_time;
+  std::int64_t soil = 0;  ///< particles
+  std::int64_t wall = 0;  ///< particles
+  std::int64_t steps = 0;
+  double time = 0.0;             ///< reached [s]
+  std::int64_t evaluations = 0;  ///< right-hand sides evaluated (whole particle set each)
+  double wall_clock = 0.0;       ///< [s]
+  int threads = 1;
+  double max_speed = 0.0;        ///< peak over the run [m/s]
+  double final_max_speed = 0.0;  ///< [m/s]
+  std::int64_t penetrated = 0;   ///< soil particles ever seen behind a wall; must be 0
+  std::int64_t left_domain = 0;  ///< soil particles that left through an open end
+  bool at_rest = false;          ///< final_max_speed below 1 % of sqrt(|g| H)
+  std::string digest;            ///< 16 hex digits over the final state in order of id
+  FieldSummary field;
+};
+
+/// A line of the run's history.
+struct HistoryRow {
+  double time = 0.0;  ///< [s]
+  std::int64_t step = 0;
+  double front = 0.0;             ///< farthest soil particle from the left boundary [m]
+  double centre_of_mass_x = 0.0;  ///< [m]
+  double kinetic_energy = 0.0;    ///< [J/m]
+  double max_speed = 0.0;         ///< [m/s]
+};
+
+}  // namespace talus
