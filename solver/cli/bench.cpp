@@ -156,7 +156,8 @@ Json measure(const BenchOptions& o, const Json& document, const Setting& s) {
               {"integrator", s.integrator},
               {"yield", s.yield},
               {"precision", s.precision},
-              {"simd", s.precision == "single" ? pair_loops_target() : "none"},
+              {"backend", simulation.backend()},
+              {"simd", simulation.simd()},
               {"neighbours", mean_neighbours(simulation)},
               {"steps", steps},
               {"seconds", spent},
@@ -164,17 +165,15 @@ Json measure(const BenchOptions& o, const Json& document, const Setting& s) {
               {"particle_steps_per_second_per_core", n / per_step / s.threads},
               {"best_evaluations_per_second_per_core", n * evaluations / step_seconds.front() / s.threads},
               {"bytes_per_particle", bytes}};
-  if (s.precision == "single") {
-    const StageTimes end = simulation.times();
-    const double total = end.total() - start.total();
-    for (const auto& [name, stage] : {std::pair{"sort", &StageTimes::sort},
-                                      {"lists", &StageTimes::lists},
-                                      {"gradient", &StageTimes::gradient},
-                                      {"walls", &StageTimes::walls},
-                                      {"momentum", &StageTimes::momentum},
-                                      {"update", &StageTimes::update}})
-      run["share"][name] = (end.*stage - start.*stage) / total;
-  }
+  const StageTimes end = simulation.times();
+  const double total = end.total() - start.total();
+  for (const auto& [name, stage] : {std::pair{"sort", &StageTimes::sort},
+                                    {"lists", &StageTimes::lists},
+                                    {"gradient", &StageTimes::gradient},
+                                    {"walls", &StageTimes::walls},
+                                    {"momentum", &StageTimes::momentum},
+                                    {"update", &StageTimes::update}})
+    run["share"][name] = (end.*stage - start.*stage) / total;
   return run;
 }
 
@@ -224,8 +223,7 @@ void print_row(const Json& r) {
               r["precision"].get<std::string>().c_str(), r["simd"].get<std::string>().c_str(),
               r["neighbours"].get<double>(), 1e-6 * r["evaluations_per_second_per_core"].get<double>(),
               1e-6 * r["particle_steps_per_second_per_core"].get<double>(), r["bytes_per_particle"].get<double>());
-  if (r.contains("share"))
-    for (const auto& share : r["share"]) std::printf(" %.1f", 100.0 * share.get<double>());
+  for (const auto& share : r["share"]) std::printf(" %.1f", 100.0 * share.get<double>());
   std::printf("\n");
   std::fflush(stdout);
 }

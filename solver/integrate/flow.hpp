@@ -26,6 +26,8 @@ class Flow {
   const FlowConstants& constants() const { return rhs_.constants(); }
   /// "vectorised" or "plain".
   virtual const char* name() const = 0;
+  /// The instruction set of its vectors ("AVX2", "AVX3_ZEN4", ...), or "none".
+  virtual const char* simd() const = 0;
 
   /// Moves the active soil on by dt [s] and writes the stress extrapolated to the walls.
   /// The reach of `cells` covers 2h around every particle's position in the middle of the step.

@@ -13,6 +13,7 @@ class PlainFlow final : public Flow {
   PlainFlow(FlowConstants constants, Soil& soil);
 
   const char* name() const override { return "plain"; }
+  const char* simd() const override { return "none"; }
   StepExtrema step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt) override;
 
   /// Every search pays for the distance, since there are no lists.

@@ -18,6 +18,7 @@ class VectorisedFlow final : public Flow {
   static bool serves(const Numerics& n) { return n.precision == Precision::single; }
 
   const char* name() const override { return "vectorised"; }
+  const char* simd() const override { return pair_loops_target(); }
   /// One parallel region a step. Does not need the cells: it has lists.
   StepExtrema step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt) override;
 

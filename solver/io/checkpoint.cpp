@@ -115,6 +115,7 @@ std::string differences(const CheckpointHeader& found, const CheckpointHeader& e
 void write_checkpoint(const fs::path& path, const CheckpointState& state, const CheckpointHeader& header) {
   const hdf5::Id file = hdf5::create_in_memory();
   write_header(file, header);
+  hdf5::write_attribute(file, "wall_clock_s", state.wall_clock);
   write_arrays(file, "reals", state.reals);
   write_arrays(file, "integers", state.integers);
   std::string content = hdf5::image(file);
@@ -131,7 +132,9 @@ CheckpointState read_checkpoint(const fs::path& path, const CheckpointHeader& ex
                   "; this program reads format " + std::to_string(format));
   if (const std::string differ = differences(read_header(file), expected); !differ.empty())
     throw IoError(path.string() + " is the checkpoint of another run" + differ);
-  return {.reals = read_arrays<double>(file, "reals"), .integers = read_arrays<std::int64_t>(file, "integers")};
+  return {.reals = read_arrays<double>(file, "reals"),
+          .integers = read_arrays<std::int64_t>(file, "integers"),
+          .wall_clock = read_optional<double>(file, "wall_clock_s").value_or(0.0)};
 }
 
 }  // namespace talus

@@ -63,6 +63,8 @@ class Reader {
     if (!value(key).is_string()) fail(key, "a text");
     return value(key).get<std::string>();
   }
+  /// For keys that earlier versions did not write.
+  std::string text_or_empty(const char* key) const { return node_.contains(key) ? text(key) : std::string(); }
   std::string digest(const char* key) const {
     const std::string digits = text(key);
     if (digits.size() != 16 || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
@@ -122,6 +124,8 @@ RunResult read_run(const Reader& root) {
           .left_domain = root.integer("left_domain"),
           .at_rest = root.boolean("at_rest"),
           .digest = root.digest("digest"),
+          .backend = root.text_or_empty("backend"),
+          .simd = root.text_or_empty("simd"),
           .field = {.captured_variance = field.number("captured_variance", 0.0),
                     .mean_phi = radians(field.number("mean_friction_angle_deg", 0.0)),
                     .terms = field.integer("terms")}};
@@ -160,6 +164,8 @@ ordered_json result_json(const RunResult& result, const Provenance& provenance) 
       {"left_domain", result.left_domain},
       {"at_rest", result.at_rest},
       {"ending", ending_names[static_cast<int>(result.ending)]},
+      {"backend", result.backend},
+      {"simd", result.simd},
       {"digest", result.digest},
       {"field",
        {{"captured_variance", result.field.captured_variance},

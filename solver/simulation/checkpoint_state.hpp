@@ -11,6 +11,7 @@ namespace talus {
 struct CheckpointState {
   std::map<std::string, std::vector<double>> reals;
   std::map<std::string, std::vector<std::int64_t>> integers;
+  double wall_clock = 0.0;  ///< spent on the run so far [s]; kept for the caller, no part of the simulation
 };
 
 }  // namespace talus

@@ -68,6 +68,8 @@ RunResult Simulation::result() const {
   r.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
   r.at_rest = max_speed_ < 0.01 * std::sqrt(norm(model_.g) * fall_height(model_));
   r.digest = digest(soil_);
+  r.backend = backend();
+  r.simd = simd();
   return r;
 }
 

@@ -32,8 +32,9 @@ class Simulation {
   const Soil& soil() const { return soil_; }
   const WallParticles& walls() const { return walls_; }
   const FlowConstants& constants() const { return flow_->constants(); }
-  /// The back end that steps the soil: "vectorised" or "plain".
+  /// The back end that steps the soil, "vectorised" or "plain", and the instruction set of its vectors, or "none".
   const char* backend() const { return flow_->name(); }
+  const char* simd() const { return flow_->simd(); }
 
   /// One time step, shortened so as not to pass `until` [s].
   /// @throws DivergedError naming step, time and particle

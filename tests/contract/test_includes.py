@@ -7,7 +7,7 @@ import pathlib
 import re
 import sys
 
-ORDER = ["math", "material", "random_field", "particles", "neighbours", "sph", "integrate", "simulation", "monte_carlo", "case", "io", "figures",
+ORDER = ["math", "material", "random_field", "particles", "neighbours", "sph", "integrate", "simulation", "monte_carlo", "case", "io", "run", "figures",
          "study", "cli"]
 MAY = {module: set(ORDER[:k + 1]) for k, module in enumerate(ORDER)}
 for module in ("particles", "neighbours", "sph", "integrate", "simulation", "material"):

@@ -30,9 +30,10 @@ CheckpointState sample_state() {
                      {0.0, -0.0, 1.0 / 3.0, Limits::denorm_min(), -Limits::min(), Limits::max(), Limits::infinity(),
                       std::bit_cast<double>(0x7ff8dead0000beefu)}},
                     {"empty", {}}},
-          .integers = {
-              {"step", {std::numeric_limits<std::int64_t>::min(), -1, 0, std::numeric_limits<std::int64_t>::max()}},
-              {"none", {}}}};
+          .integers = {{"step",
+                        {std::numeric_limits<std::int64_t>::min(), -1, 0, std::numeric_limits<std::int64_t>::max()}},
+                       {"none", {}}},
+          .wall_clock = 12.625};
 }
 
 /// The bits of an array, so that -0 is not 0 and NaN is itself.
@@ -44,6 +45,7 @@ std::vector<std::uint64_t> bits(const std::vector<double>& values) {
 
 void expect_equal(const CheckpointState& a, const CheckpointState& b) {
   EXPECT_EQ(a.integers, b.integers);
+  EXPECT_EQ(a.wall_clock, b.wall_clock);
   ASSERT_EQ(a.reals.size(), b.reals.size());
   for (const auto& [name, values] : a.reals) {
     ASSERT_TRUE(b.reals.contains(name)) << name;

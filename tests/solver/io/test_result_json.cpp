@@ -41,6 +41,8 @@ RunResult sample_result() {
           .left_domain = 2,
           .at_rest = true,
           .digest = "0123456789abcdef",
+          .backend = "vectorised",
+          .simd = "AVX2",
           .field = {.captured_variance = 0.016, .mean_phi = radians(25.0), .terms = 5}};
 }
 
@@ -83,6 +85,8 @@ TEST(ResultJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(d["at_rest"], true);
   EXPECT_EQ(d["ending"], "at_rest");
   EXPECT_EQ(d["digest"], "0123456789abcdef");
+  EXPECT_EQ(d["backend"], "vectorised");
+  EXPECT_EQ(d["simd"], "AVX2");
   EXPECT_EQ(d["field"]["captured_variance"], 0.016);
   EXPECT_NEAR(d["field"]["mean_friction_angle_deg"], 25.0, 1e-13);
   EXPECT_EQ(d["field"]["terms"], 5);
@@ -119,6 +123,19 @@ TEST(ResultJson, ComesBack) {
   EXPECT_NEAR(again["field"]["mean_friction_angle_deg"], 25.0, 1e-13);
   again["field"]["mean_friction_angle_deg"] = document()["field"]["mean_friction_angle_deg"];
   EXPECT_EQ(again.dump(), document().dump());
+}
+
+TEST(ResultJson, OfAnEarlierVersionIsReadWithoutTheNameOfTheLoops) {
+  const TemporaryDirectory dir;
+  json earlier = document();
+  earlier.erase("backend");
+  earlier.erase("simd");
+  EXPECT_EQ(schema_faults(earlier), "");
+  write_file_atomically(dir / "result.json", earlier.dump());
+  const RunResult result = read_result(dir / "result.json").first;
+  EXPECT_EQ(result.backend, "");
+  EXPECT_EQ(result.simd, "");
+  EXPECT_EQ(result.digest, earlier["digest"]);
 }
 
 TEST(ResultJson, KeepsTheLargestSeed) {
@@ -169,6 +186,7 @@ std::string refusal(const TemporaryDirectory& dir, const json& bad) {
 TEST(ResultJson, NamesAnyKeyThatIsMissing) {
   const TemporaryDirectory dir;
   for (const std::string& pointer : pointers(document())) {
+    if (pointer == "/backend" || pointer == "/simd") continue;  // earlier versions did not write them
     const json::json_pointer place(pointer);
     json bad = document();
     bad[place.parent_pointer()].erase(place.back());

@@ -1,0 +1,144 @@
+#include "run/run_realization.hpp"
+
+#include <omp.h>
+
+#include <chrono>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "io/checkpoint.hpp"
+#include "io/files.hpp"
+#include "io/result_json.hpp"
+#include "math/error.hpp"
+#include "run/recorder.hpp"
+#include "run/thread_choice.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr double checkpoint_period = 60.0;  ///< seconds of wall clock that a kill -9 may cost
+constexpr std::size_t max_result_bytes = std::size_t{1} << 20, max_case_bytes = std::size_t{64} << 20;
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+  return text;
+}
+
+/// The finished run of a directory, if it is the one that is asked for.
+RunOutcome finished_run(const fs::path& directory, const RunRequest& request) {
+  const fs::path file = directory / "result.json";
+  const auto [result, of] = read_result(file);
+  if (of.seed != request.seed || of.realization != request.realization || of.perturbation != request.perturbation)
+    throw IoError(directory.string() + " holds the finished run of another seed or realization; choose another --out");
+  return {true, result.time, result, read_file(file, max_result_bytes)};
+}
+
+/// Wall clock of a run, over all of its processes.
+class RunClock {
+ public:
+  explicit RunClock(double earlier) : earlier_(earlier) {}
+  /// Of this process [s].
+  double elapsed() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
+  /// Of the run [s].
+  double total() const { return earlier_ + elapsed(); }
+  void add_earlier(double seconds) { earlier_ += seconds; }
+
+ private:
+  double earlier_;
+  Clock::time_point started_ = Clock::now();
+};
+
+}  // namespace
+
+std::uint64_t choose_seed(std::optional<std::uint64_t> given, const LoadedCase& loaded, const fs::path& directory,
+                          bool resume) {
+  if (given) return *given;
+  const fs::path earlier = directory / "case.resolved.json";
+  if (resume && fs::exists(earlier)) {
+    const auto document = nlohmann::json::parse(read_file(earlier, max_case_bytes), nullptr, false);
+    const nlohmann::json::json_pointer seed("/study/seed");
+    if (!document.is_discarded() && document.contains(seed) && document[seed].is_number_unsigned())
+      return document[seed];
+  }
+  if (loaded.value.study.seed) return *loaded.value.study.seed;
+  std::random_device entropy;
+  return ((std::uint64_t{entropy()} << 32) | entropy()) & ((1ull << 53) - 1);
+}
+
+RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const RunHooks& hooks) {
+  RunClock clock(0.0);
+  const Case& problem = loaded.value;
+  const RunIdentity identity{request.seed, request.realization, request.perturbation.value_or(0.0)};
+  loaded.resolved["study"]["seed"] = request.seed;
+
+  const ParticlePlan plan = plan_particles(problem.model);
+  ThreadChoice threads(plan.soil.size() + plan.walls.size(), omp_get_max_threads(), request.threads);
+  omp_set_num_threads(threads.count());
+  const Strength soil = strength(problem.model, problem.field, problem.study, plan, identity);
+  OutputDirectory out(request.directory, OutputKind::run, loaded.hash, request.resume);
+  if (out.finished()) return finished_run(out.path(), request);
+
+  const Provenance provenance{request.version, request.seed,  request.realization, request.perturbation,
+                              loaded.hash,     problem.title, TALUS_COMPILER,      utc_now()};
+  const CheckpointHeader header{request.version, loaded.hash, request.seed, request.realization, request.perturbation};
+  const fs::path checkpoint_file = out.path() / "checkpoint.h5";
+  if (!request.resume) fs::remove(checkpoint_file);  // of an unfinished run that is being started over
+  const bool resumed = request.resume && fs::exists(checkpoint_file);
+  Simulation simulation(problem.model, plan, soil.properties);
+  if (resumed) {
+    const CheckpointState state = read_checkpoint(checkpoint_file, header);
+    simulation.restore(state);
+    clock.add_earlier(state.wall_clock);
+  }
+  write_file_atomically(out.path() / "case.resolved.json", loaded.resolved.dump(2) + "\n");
+  Recorder recorder(out.path(), simulation, problem.model.time, resumed);
+  const auto write_checkpoint_now = [&] {
+    CheckpointState state = simulation.state();
+    state.wall_clock = clock.total();
+    recorder.write_history();
+    recorder.wait_for_snapshot();
+    write_checkpoint(checkpoint_file, state, header);
+  };
+
+  double next_checkpoint = checkpoint_period;
+  try {
+    while (!simulation.finished()) {
+      if (hooks.stop_requested()) {
+        write_checkpoint_now();
+        return {false, simulation.time(), {}, {}};
+      }
+      const double before = clock.elapsed();
+      simulation.step(problem.model.time.end);
+      threads.record(clock.elapsed() - before);
+      omp_set_num_threads(threads.count());
+      recorder.record(simulation);
+      hooks.show_progress(simulation, clock.elapsed());
+      if (clock.elapsed() > next_checkpoint) {
+        write_checkpoint_now();
+        next_checkpoint = clock.elapsed() + checkpoint_period;
+      }
+    }
+  } catch (const DivergedError&) {
+    recorder.write_history();
+    throw;
+  }
+  recorder.finish(simulation);
+
+  RunOutcome outcome{true, simulation.time(), simulation.result(), {}};
+  outcome.result.wall_clock = clock.total();
+  outcome.result.threads = threads.most_used();
+  outcome.result.field = soil.summary;
+  outcome.document = result_json(outcome.result, provenance).dump(2) + "\n";
+  write_file_atomically(out.path() / "result.json", outcome.document);
+  out.mark_finished();
+  fs::remove(checkpoint_file);
+  return outcome;
+}
+
+}  // namespace talus
