@@ -156,8 +156,9 @@ class Basics(Directory):
                         "particle_steps_per_second_per_core", "bytes_per_particle"):
                 self.assertIn(key, run)
             self.assertGreater(run["evaluations_per_second_per_core"], 0)
-            if run["precision"] == "single":
-                self.assertAlmostEqual(sum(run["share"].values()), 1.0)
+            self.assertAlmostEqual(sum(run["share"].values()), 1.0)
+            self.assertEqual(run["backend"], "vectorised" if run["precision"] == "single" else "plain")
+            self.assertEqual(run["simd"] == "none", run["backend"] == "plain")
             factor = 2 if run["integrator"] == "rk2" else 1
             self.assertAlmostEqual(run["evaluations_per_second_per_core"] / run["particle_steps_per_second_per_core"], factor)
         self.assertAlmostEqual(bench["runs"][0]["particles"], 2000, delta=40)
@@ -213,6 +214,17 @@ class Run(Directory):
         with unittest.mock.patch.dict(ENVIRONMENT, TALUS_SIMD="SSE4"):  # other rounding: no fused multiply-add
             other = self.run_ok("sse4")
         self.assertAlmostEqual(other["influence_zone_m"], best["influence_zone_m"], delta=0.01)
+
+    def test_a_run_says_which_loops_it_takes(self):
+        short = ("--set", "time.end_s=0.02", "--set", "time.snapshot_times_s=[]")
+        with unittest.mock.patch.dict(ENVIRONMENT, TALUS_SIMD="SSE4"):
+            fast = self.run_ok("fast", *short)
+        self.assertEqual((fast["backend"], fast["simd"]), ("vectorised", "SSE4"))
+        done = talus("run", SLOPE, *COARSE, "--out", self.dir / "plain", *short, "--set", "numerics.precision=double")
+        plain = load(self.dir / "plain/result.json")
+        check_schema("result", plain)
+        self.assertEqual((plain["backend"], plain["simd"]), ("plain", "none"))
+        self.assertIn("nine times slower", done.stderr)
 
     def test_both_precisions_reach_the_same_front(self):
         single, double = (self.run_ok(name, "--set", f"numerics.precision={name}") for name in ("single", "double"))

@@ -76,8 +76,8 @@ TEST(Simulation, PaperNormStopsShorter) {  // its soil is sqrt(3) times stronger
 TEST(Simulation, WeakerParticlesRunFarther) {
   Model m = collapse(0.05);
   const ParticlePlan plan = plan_particles(m);
-  Simulation strong(m, plan, std::vector<double>(plan.soil.size(), 0.7)),
-      weak(m, plan, std::vector<double>(plan.soil.size(), 0.2));
+  Simulation strong(m, plan, {std::vector<double>(plan.soil.size(), 0.7)}),
+      weak(m, plan, {std::vector<double>(plan.soil.size(), 0.2)});
   run(strong, m.time.end), run(weak, m.time.end);
   EXPECT_GT(farthest(weak.soil()), farthest(strong.soil()) + 0.2);
 }
