@@ -143,10 +143,10 @@ void add_run(CLI::App& app, Action& action) {
   verb->add_option("--seed", options->seed,
                    "Seed of the random field; default: the case's, else a random one, which is recorded")
       ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));  // what every reader of JSON keeps exact
-  verb->add_option("--threads", options->threads,
-                   "OpenMP threads; the result does not depend on them; otherwise as many as pay: one for every 2000 "
-                   "particles, fewer "
-                   "on a busy machine")
+  verb->add_option(
+          "--threads", options->threads,
+          "OpenMP threads; by default one for every 2000 particles, fewer on a busy machine; the result does not "
+          "depend on them")
       ->check(CLI::Range(1, 4096));
   add_overrides(*verb, options->overrides);
   verb->add_flag("--resume", options->resume, "Continue from the checkpoint in --out");
