@@ -11,10 +11,10 @@
 namespace talus {
 namespace {
 
-/// Follows the parser through the document: where it is, which keys it has seen, how deep it stands.
-class Watch {
+/// Enforces the limits during parsing and finds duplicate keys: tracks the position, the keys seen and the depth.
+class ParseGuard {
  public:
-  Watch(const ParseLimits& limits, Faults& faults) : limits_(limits), faults_(faults) {}
+  ParseGuard(const ParseLimits& limits, Faults& faults) : limits_(limits), faults_(faults) {}
 
   void operator()(Json::parse_event_t event, const Json& parsed) {
     using Event = Json::parse_event_t;
@@ -94,8 +94,8 @@ std::string place(std::string_view text, std::size_t byte, const std::string& so
   return source + ":" + std::to_string(line) + ":" + std::to_string(before.size() - line_start + 1);
 }
 
-/// The parser's own words without its preamble.
-std::string complaint(std::string_view what) {
+/// The message of the JSON library without its preamble.
+std::string parser_message(std::string_view what) {
   if (const auto at = what.find("column "); at != std::string_view::npos)
     if (const auto colon = what.find(": ", at); colon != std::string_view::npos) what.remove_prefix(colon + 2);
   return shorten(what, 200);
@@ -132,18 +132,18 @@ Json parse_json(std::string_view text, const std::string& source, const ParseLim
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
     throw ConfigError(source + ":1:1", "holds nothing; a case is one JSON object, { ... }");
   Faults faults;
-  Watch watch(limits, faults);
+  ParseGuard guard(limits, faults);
   const auto follow = [&](int, Json::parse_event_t event, Json& parsed) {
-    watch(event, parsed);
+    guard(event, parsed);
     return true;
   };
   Json document;
   try {
     document = Json::parse(text.begin(), text.end(), follow);
   } catch (const Json::parse_error& e) {
-    throw ConfigError(place(text, e.byte, source), complaint(e.what()) + not_a_number_hint(text, e.byte));
+    throw ConfigError(place(text, e.byte, source), parser_message(e.what()) + not_a_number_hint(text, e.byte));
   } catch (const Json::out_of_range&) {
-    throw ConfigError(watch.pointer(1), "is too large for a number");
+    throw ConfigError(guard.pointer(1), "is too large for a number");
   }
   faults.raise();
   return document;

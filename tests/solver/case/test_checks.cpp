@@ -76,5 +76,20 @@ TEST(Warnings, AHypercubeThatIsToStopEarly) {
   EXPECT_EQ(test::load(with("/study/sampling", "latin_hypercube", stopping)).warnings.size(), 1u);
 }
 
+TEST(Warnings, ADensityInAnotherUnit) {
+  EXPECT_TRUE(test::load(with("/material/density_kg_m3", 500)).warnings.empty());
+  const LoadedCase kilonewtons = test::load(with("/material/density_kg_m3", 19.4));
+  ASSERT_EQ(kilonewtons.warnings.size(), 1u);
+  EXPECT_EQ(kilonewtons.warnings[0].pointer, "/material/density_kg_m3");
+  EXPECT_EQ(test::load(with("/material/density_kg_m3", 5001)).warnings.size(), 1u);
+}
+
+TEST(Warnings, ASpacingThatLeavesFewParticles) {
+  EXPECT_TRUE(test::load(with("/particle_spacing_m", 0.65)).warnings.empty());  // 43 m2 / 0.4225 m2 = 102
+  const LoadedCase coarse = test::load(with("/particle_spacing_m", 0.66));      // 99
+  ASSERT_EQ(coarse.warnings.size(), 1u);
+  EXPECT_EQ(coarse.warnings[0].pointer, "/particle_spacing_m");
+}
+
 }  // namespace
 }  // namespace talus
