@@ -31,9 +31,6 @@ class Commands {
   /// A run without random numbers, for UM-Bridge.
   Command median(const std::filesystem::path& case_file, const std::filesystem::path& out) const;
   Command stats(const StudyDirectory& study) const;
-  /// One quantity with `bins` or `edges`, or, with neither, as in study.json.
-  Command distribution(const StudyDirectory& study, int quantity, std::optional<int> bins,
-                       const std::vector<double>& edges) const;
   Command field(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
                 const std::filesystem::path& out) const;
   /// @param out  ends in .json or .svg

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "support/digest.hpp"
+#include "base/digest.hpp"
+#include "base/log.hpp"
 #include "support/files.hpp"
-#include "support/log.hpp"
+#include "support/seed.hpp"
+#include "support/text.hpp"
 
 namespace talus::service {
 namespace {
@@ -16,7 +18,6 @@ using std::chrono::seconds;
 constexpr double evaluations_per_second = 15e6;  ///< of a core, see README
 
 constexpr std::uint64_t crowded_bytes = std::uint64_t{16} << 20;  ///< with less, a failed write is put down to the disk
-constexpr std::int64_t most_exact_integer = (std::int64_t{1} << 53) - 1;
 
 /// A directory that is gone unless it is kept.
 class NewDirectory {
@@ -24,7 +25,7 @@ class NewDirectory {
   explicit NewDirectory(fs::path path) : path_(std::move(path)) {
     std::error_code error;
     fs::create_directories(path_, error);
-    if (error) throw_file_error("create", path_, error.value());
+    if (error) throw_io_error("create", path_, error.value());
   }
   ~NewDirectory() {
     std::error_code ignored;
@@ -123,7 +124,7 @@ void Jobs::refuse_case(const Outcome& outcome, const std::string& pointer) const
 
 Json Jobs::validate(const Json& document, const std::string& pointer) {
   const NewDirectory scratch(data_.scratch() / ("case-" + random_hex(8)));
-  write_file(scratch.path() / "case.json", dump(document));
+  write_file_atomically(scratch.path() / "case.json", dump(document));
   const Outcome outcome = run(commands_.validate(scratch.path() / "case.json"), seconds(60));
   if (outcome.end.signal || outcome.end.exit_code != 0) refuse_case(outcome, pointer);
   Json demand = Json::parse(outcome.out, nullptr, false);
@@ -177,12 +178,11 @@ std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& in
   NewDirectory made(data_.unfinished(job.id));
   const StudyDirectory directory{made.path()};
   const fs::path scratch = data_.scratch() / (job.id + ".json");
-  write_file(scratch, dump(study.document));
+  write_file_atomically(scratch, dump(study.document));
   const Json& options = study.document.at("study");
   job.planned = options.value("realizations", std::int64_t{100});
-  job.seed = options.contains("seed")
-                 ? options.at("seed").get<std::int64_t>()
-                 : static_cast<std::int64_t>(std::stoull(random_hex(7), nullptr, 16) & most_exact_integer);
+  job.seed =
+      options.contains("seed") ? options.at("seed").get<std::int64_t>() : static_cast<std::int64_t>(random_seed());
   job.particles = demand.at("particles").at("soil").get<double>() + demand.at("particles").at("wall").get<double>();
   job.steps = demand.at("steps").get<double>();
   check_size(job.particles, job.steps, job.planned);
@@ -190,7 +190,7 @@ std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& in
   fs::remove(scratch);
   if (prepared.end.signal || prepared.end.exit_code != 0) refuse_case(prepared, "/inputs/case");
 
-  const Json plan = Json::parse(read_file(directory.plan(), 1 << 24).value_or("null"));
+  const Json plan = Json::parse(find_file(directory.plan(), 1 << 24).value_or("null"));
   job.title = plan.at("title").get<std::string>();
   job.planned = plan.at("realizations").get<std::int64_t>();
   job.floor = plan.at("noise_floor_replicates").get<std::int64_t>();

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "base/digest.hpp"
+#include "base/log.hpp"
 #include "jobs/jobs.hpp"
-#include "support/digest.hpp"
 #include "support/files.hpp"
-#include "support/log.hpp"
 
 namespace talus::service {
 namespace {
@@ -56,20 +56,22 @@ struct Scratch {
 
 }  // namespace
 
-Json Jobs::distribution(const Job& job, int quantity, std::optional<int> bins, const std::vector<double>& edges) {
+Json Jobs::distribution(const Job& job, const Measure& quantity, const Bins& bins) {
   const std::string key =
-      job.id + "/" + std::to_string(quantity) + "/" + std::to_string(bins.value_or(0)) + "/" + Json(edges).dump();
+      job.id + "/" + quantity.key + "/" + std::to_string(bins.count) + "/" + Json(bins.edges).dump();
   return distributions_.get(key, job.version, ended(job.state) ? milliseconds(0) : behind, [&] {
-    const Outcome outcome = run(commands_.distribution({data_.job(job.id)}, quantity, bins, edges), seconds(60));
-    if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the histogram");
-    Json answer = Json::parse(outcome.out);
+    std::optional<Plan> plan = find_plan(data_.job(job.id));
+    if (!plan) throw Refusal(Reason::internal, "the plan of the job is missing");
+    plan->study.realizations = job.planned;
+    const MeasureSample sample = store_.measure_sample(job, quantity, plan->study.stop_half_width);
+    Json answer = talus::distribution(*plan, quantity, sample, bins);
     drop_nulls(answer);
     return answer;
   });
 }
 
 Json Jobs::summary(const Job& job) const {
-  const auto text = read_file(StudyDirectory{data_.job(job.id)}.summary(), max_bytes);
+  const auto text = find_file(StudyDirectory{data_.job(job.id)}.summary(), max_bytes);
   if (!text) throw Refusal(Reason::result_not_ready, "there are no statistics of this job");
   return Json::parse(*text);
 }
@@ -80,7 +82,7 @@ std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
   const RunKey run_key{job.number, false, index};
   const Outcome outcome = run(commands_.field({data_.job(job.id)}, run_key, job.seed, file), seconds(60));
   if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the field");
-  const std::string text = read_file(file, max_bytes).value_or("");
+  const std::string text = find_file(file, max_bytes).value_or("");
   if (svg) return text;
   Json json = Json::parse(outcome.out);
   // The columns of the table: x_m, y_m, friction_angle_deg, tan_phi.
@@ -105,7 +107,7 @@ std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
   const StudyDirectory study{data_.job(job.id)};
   fs::create_directories(study.profiles());
   const fs::path kept = study.profiles() / (std::to_string(index) + (svg ? ".svg" : ".json"));
-  if (auto text = read_file(kept, max_bytes)) return *text;
+  if (auto text = find_file(kept, max_bytes)) return *text;
   const Scratch scratch(data_.scratch());
   const fs::path out = scratch.path / "run";
   const Outcome again = run(commands_.replay(study, {job.number, false, index}, job.seed, out), seconds(3600), true);
@@ -114,8 +116,8 @@ std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
   const fs::path& wanted = svg ? picture : json;
   const Outcome made = run(commands_.profile(out, wanted), seconds(60));
   if (made.end.signal || made.end.exit_code != 0) broke(made, "the profile");
-  const std::string text = read_file(wanted, max_bytes).value_or("");
-  write_file(kept, text);
+  const std::string text = find_file(wanted, max_bytes).value_or("");
+  write_file_atomically(kept, text);
   prune(study.profiles(), profiles_kept);
   return text;
 }
@@ -125,11 +127,11 @@ Json Jobs::evaluate(const Json& document) {
   const double count = particles.at("soil").get<double>() + particles.at("wall").get<double>();
   check_size(count, demand.at("steps").get<double>(), 1);
   const Scratch scratch(data_.scratch());
-  write_file(scratch.path / "case.json", dump(document));
+  write_file_atomically(scratch.path / "case.json", dump(document));
   const Outcome outcome =
       run(commands_.median(scratch.path / "case.json", scratch.path / "run"), config_.time_limit, true);
   if (outcome.end.exit_code == 3 && !outcome.end.signal) throw Refusal(Reason::bad_request, outcome.err);
-  const auto text = read_file(scratch.path / "run" / "result.json", 1 << 20);
+  const auto text = find_file(scratch.path / "run" / "result.json", 1 << 20);
   if (outcome.end.signal || outcome.end.exit_code != 0 || !text)
     throw Refusal(Reason::internal, "the run failed: " + outcome.err);
   return Json::parse(*text);

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "base/log.hpp"
 #include "executor/local.hpp"
 #include "executor/slurm.hpp"
 #include "support/files.hpp"
-#include "support/log.hpp"
 
 namespace talus::service {
 namespace {

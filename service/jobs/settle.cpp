@@ -2,9 +2,9 @@
 
 #include <signal.h>
 
+#include "base/log.hpp"
 #include "jobs/scheduler.hpp"
 #include "support/files.hpp"
-#include "support/log.hpp"
 
 namespace talus::service {
 namespace {
@@ -17,9 +17,6 @@ using executor::tail;
 constexpr std::size_t tail_bytes = 4000;
 constexpr std::size_t max_summary_bytes = std::size_t{256} << 20;
 constexpr int publish_attempts = 3;
-
-/// Exit codes of talus.
-enum Exit : int { ok = 0, bad_case = 3, diverged = 4, io = 5, interrupted = 6, sigint = 130, sigterm = 143 };
 
 Json run_fields(const Claim& claim) {
   return {{"job", claim.job_id}, {"run", claim.run.index}, {"floor", claim.run.floor}, {"attempt", claim.attempt}};
@@ -47,12 +44,13 @@ void Scheduler::settle(Worker& worker) {
   RunFailure failure;
   failure.log_tail = log;
   end.signal ? failure.signal = end.signal : failure.exit_code = end.exit_code;
-  if (!end.signal && end.exit_code == ok) return settle_result(worker);
+  if (!end.signal && end.exit_code == Exit::ok) return settle_result(worker);
   if (how.timed_out || end.signal == SIGXCPU) {
     failure.reason = "took longer than the limit of " + std::to_string(config_.time_limit.count()) + " s";
     return settle_failure(worker, failure);
   }
-  const bool asked = end.exit_code == interrupted || end.exit_code == sigint || end.exit_code == sigterm;
+  const bool asked =
+      end.exit_code == Exit::interrupted || end.exit_code == Exit::sigint || end.exit_code == Exit::sigterm;
   if (draining_ && (end.signal || asked)) return settle_broken(worker, failure, false);
   if (end.signal || asked) {
     failure.reason = !how.why.empty() ? how.why
@@ -61,8 +59,8 @@ void Scheduler::settle(Worker& worker) {
     failure.reason += said;
     return settle_broken(worker, failure, true);
   }
-  failure.reason = (end.exit_code == diverged ? "diverged" : "exit code " + std::to_string(end.exit_code)) + said;
-  if (end.exit_code != io) return settle_failure(worker, failure);
+  failure.reason = (end.exit_code == Exit::diverged ? "diverged" : "exit code " + std::to_string(end.exit_code)) + said;
+  if (end.exit_code != Exit::io) return settle_failure(worker, failure);
   if (how.resumed) fs::remove_all(worker.study.work(worker.claim.run));  // a checkpoint that it cannot go on from
   settle_broken(worker, failure, room_on_disk());
 }
@@ -125,10 +123,11 @@ void Scheduler::start_publisher(const Job& job, bool interim) {
 void Scheduler::settle_publisher(Publisher& publisher, ProcessEnd end) {
   const Job& job = publisher.job;
   if (!store_.is_open(job.number)) return;
-  if (end.signal || end.exit_code != ok) {
+  if (end.signal || end.exit_code != Exit::ok) {
     const std::string said = tail(data_.scratch() / ("stats-" + job.id + ".log"), tail_bytes);
     log_error("no_statistics", {{"job", job.id}, {"why", last_line(said)}});
-    const bool no_room = end.exit_code == io && !end.signal && !room_on_disk();  // looked at again with the next beat
+    const bool no_room =
+        end.exit_code == Exit::io && !end.signal && !room_on_disk();  // looked at again with the next beat
     if (publisher.interim || no_room || ++publish_failures_[job.number] < publish_attempts) return;
     store_.finish(job.number, JobState::failed, "the statistics cannot be made: " + last_line(said));
     return;
@@ -136,7 +135,7 @@ void Scheduler::settle_publisher(Publisher& publisher, ProcessEnd end) {
   Json realizations;
   try {
     realizations =
-        Json::parse(read_file(publisher.study.summary(), max_summary_bytes).value_or("null")).at("realizations");
+        Json::parse(find_file(publisher.study.summary(), max_summary_bytes).value_or("null")).at("realizations");
   } catch (const nlohmann::json::exception& e) {
     log_error("no_statistics", {{"job", job.id}, {"why", e.what()}});
     store_.finish(job.number, JobState::failed, "the statistics cannot be read");

@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "support/files.hpp"
+#include "support/text.hpp"
 
 namespace talus::service {
 namespace {
@@ -31,7 +32,7 @@ fs::path StudyDirectory::log(const RunKey& run) const { return work(run).concat(
 
 std::optional<RunResult> read_result(const fs::path& file, const RunKey& run, std::int64_t seed,
                                      const std::string& case_hash) {
-  const std::optional<std::string> text = read_file(file, max_result_bytes);
+  const std::optional<std::string> text = find_file(file, max_result_bytes);
   if (!text) return std::nullopt;
   try {
     const Json json = Json::parse(*text);
@@ -40,8 +41,9 @@ std::optional<RunResult> read_result(const fs::path& file, const RunKey& run, st
                       of.at("case_hash") == case_hash && of.at("perturbation").is_null() == !run.floor;
     if (!same || json.at("ending") == "interrupted") return std::nullopt;
     RunResult result;
-    for (std::size_t i = 0; i < measure_names.size(); ++i) result.measures[i] = json.at(measure_names[i]).get<double>();
+    for (const Measure& measure : measure_table) result.measures.*measure.member = json.at(measure.key).get<double>();
     result.mean_friction_angle_deg = json.at("field").at("mean_friction_angle_deg").get<double>();
+    result.captured_variance = json.at("field").at("captured_variance").get<double>();
     result.steps = json.at("steps").get<std::int64_t>();
     result.wall_clock = json.at("wall_clock_s").get<double>();
     result.digest = json.at("digest").get<std::string>();
@@ -60,13 +62,10 @@ void write_failure(const StudyDirectory& study, const RunKey& run, const RunFail
                      {"attempts", attempts},
                      {"log_tail", failure.log_tail},
                      {"rerun", rerun}};
-  write_file(study.failure(run), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file_atomically(study.failure(run), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-std::string perturbation(std::int64_t k) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, static_cast<double>(k) / 1e6).ptr};
-}
+std::string perturbation(std::int64_t k) { return to_text(static_cast<double>(k) / 1e6); }
 
 std::string replay_command(const RunKey& run, std::int64_t seed) {
   return "talus run case.resolved.json --realization " + std::to_string(run.floor ? 0 : run.index) + " --seed " +

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "base/json.hpp"
 #include "queue/records.hpp"
-#include "support/json.hpp"
 
 namespace talus::service {
 

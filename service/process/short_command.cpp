@@ -18,7 +18,7 @@ constexpr std::size_t max_out_bytes = std::size_t{64} << 20;
 executor::Process started(const executor::Command& command, const fs::path& out, const fs::path& err) try {
   return executor::Process(command, out, err);
 } catch (const executor::ProcessError& e) {
-  FileError thrown(e.what());
+  IoError thrown(e.what());
   thrown.error = e.error;
   throw thrown;
 }
@@ -47,7 +47,7 @@ Outcome run_to_end(const executor::Command& command, const fs::path& scratch, st
     nap = std::min(nap * 2, std::chrono::milliseconds(20));
   }
   outcome.end = *child.poll();
-  outcome.out = read_file(out, max_out_bytes).value_or("");
+  outcome.out = find_file(out, max_out_bytes).value_or("");
   outcome.err = executor::tail(err, 4000);
   return outcome;
 }

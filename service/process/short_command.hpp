@@ -20,7 +20,7 @@ struct Outcome {
 
 /// Runs a command to its end, its output through files in `scratch`. It is killed after `limit`, or when `give_up` says
 /// so.
-/// @throws FileError
+/// @throws IoError
 Outcome run_to_end(const executor::Command& command, const std::filesystem::path& scratch,
                    std::chrono::milliseconds limit, const std::function<bool()>& give_up = {});
 

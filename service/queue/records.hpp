@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "support/clock.hpp"
+#include "base/clock.hpp"
+#include "support/measures.hpp"
 
 namespace talus::service {
 
@@ -66,13 +67,11 @@ struct Claim {
   std::int64_t crashes = 0;  ///< attempts that ended by themselves without a result
 };
 
-inline constexpr std::array<const char*, 5> measure_names{"influence_zone_m", "front_connected_m", "front_mass_99_m",
-                                                          "front_mass_999_m", "centre_of_mass_x_m"};
-
 /// What a finished run says of itself.
 struct RunResult {
-  std::array<double, measure_names.size()> measures{};  ///< [m]
+  Measures measures;
   double mean_friction_angle_deg = 0.0;
+  std::optional<double> captured_variance = {};  ///< [-]; unset in runs of before it was kept
   std::int64_t steps = 0;
   double wall_clock = 0.0;  ///< [s]
   std::string digest;
@@ -107,7 +106,7 @@ struct JobFilter {
 /// Which realizations to list, by index.
 struct RunFilter {
   std::optional<RunState> state = {};
-  int measure = 0;  ///< index into measure_names
+  const Measure* measure = &measure_table[0];  ///< that the bounds are about
   std::optional<double> least = {}, below = {}, most = {};
   std::int64_t after = -1;
   int limit = 100;

@@ -53,14 +53,16 @@ Run run_of(SQLite::Statement& row) {
   run.crashes = row.getColumn(i++).getInt64();
   if (run.state == RunState::done) {
     RunResult result;
-    for (double& measure : result.measures) measure = row.getColumn(i++).getDouble();
+    for (const Measure& measure : measure_table) result.measures.*measure.member = row.getColumn(i++).getDouble();
     result.mean_friction_angle_deg = row.getColumn(i++).getDouble();
+    const SQLite::Column share = row.getColumn(i++);
+    if (!share.isNull()) result.captured_variance = share.getDouble();
     result.steps = row.getColumn(i++).getInt64();
     result.wall_clock = row.getColumn(i++).getDouble();
     result.digest = row.getColumn(i++).getString();
     run.result = std::move(result);
   } else if (run.state == RunState::failed) {
-    i += static_cast<int>(measure_names.size()) + 4;
+    i += static_cast<int>(measure_table.size()) + 5;
     RunFailure failure;
     failure.reason = row.getColumn(i++).getString();
     failure.exit_code = small(row.getColumn(i++));

@@ -11,6 +11,8 @@
 
 #include "queue/database.hpp"
 #include "queue/records.hpp"
+#include "study/record.hpp"
+#include "study/summary.hpp"
 
 namespace talus::service {
 
@@ -86,6 +88,14 @@ class Store {
 
   std::vector<Run> runs(std::int64_t job, const RunFilter& filter);
   std::optional<Run> run(const RunKey& key);
+
+  // --- records, for statistics
+
+  /// Gives every run that has ended, of one kind, in order of index; one row is held at a time.
+  void for_each_record(std::int64_t job, bool floor, const std::function<void(const Record&)>& take);
+  /// The values of one measure over the realizations that count.
+  /// @param stop_half_width  of the job's plan: the study is cut where StopRule says so
+  MeasureSample measure_sample(const Job& job, const Measure& measure, const std::optional<double>& stop_half_width);
 
  private:
   Database db_;

@@ -116,13 +116,15 @@ bool Store::is_current(const Claim& claim) {
 
 bool Store::accept(const Claim& claim, const RunResult& result) {
   return db_.write([&](SQLite::Database& db) {
-    Statement update(db, std::string("UPDATE runs SET state = 'done', influence_zone_m = ?, front_connected_m = ?, "
-                                     "front_mass_99_m = ?, front_mass_999_m = ?, centre_of_mass_x_m = ?, "
-                                     "mean_friction_angle_deg = ?, steps = ?, wall_clock_s = ?, digest = ?") +
-                             current);
+    std::string set = "UPDATE runs SET state = 'done', ";
+    for (const Measure& measure : measure_table) set += measure.key + std::string(" = ?, ");
+    Statement update(
+        db,
+        set + "mean_friction_angle_deg = ?, captured_variance = ?, steps = ?, wall_clock_s = ?, digest = ?" + current);
     int i = 1;
-    for (const double measure : result.measures) update.bind(i++, measure);
+    for (const Measure& measure : measure_table) update.bind(i++, result.measures.*measure.member);
     update.bind(i++, result.mean_friction_angle_deg);
+    result.captured_variance ? update.bind(i++, *result.captured_variance) : update.bind(i++);
     update.bind(i++, result.steps);
     update.bind(i++, result.wall_clock);
     update.bind(i++, result.digest);
@@ -211,14 +213,14 @@ bool Store::is_open(std::int64_t job) {
 }
 
 std::vector<Run> Store::runs(std::int64_t job, const RunFilter& filter) {
-  const std::string measure = measure_names[static_cast<std::size_t>(filter.measure)];
+  const std::string measure = filter.measure->key;
   std::string where = "job = ? AND floor = 0 AND idx > ?";
   if (filter.state) where += " AND state = ?";
   if (filter.least) where += " AND " + measure + " >= ?";
   if (filter.below) where += " AND " + measure + " < ?";
   if (filter.most) where += " AND " + measure + " <= ?";
   return db_.read([&](SQLite::Database& db) {
-    Statement query(db, std::string("SELECT ") + run_columns + " FROM runs WHERE " + where + " ORDER BY idx LIMIT ?");
+    Statement query(db, "SELECT " + run_columns + " FROM runs WHERE " + where + " ORDER BY idx LIMIT ?");
     int i = 1;
     query.bind(i++, job);
     query.bind(i++, filter.after);
@@ -234,7 +236,7 @@ std::vector<Run> Store::runs(std::int64_t job, const RunFilter& filter) {
 
 std::optional<Run> Store::run(const RunKey& key) {
   return db_.read([&](SQLite::Database& db) -> std::optional<Run> {
-    Statement query(db, std::string("SELECT ") + run_columns + " FROM runs WHERE job = ? AND floor = ? AND idx = ?");
+    Statement query(db, "SELECT " + run_columns + " FROM runs WHERE job = ? AND floor = ? AND idx = ?");
     query.bind(1, key.job);
     query.bind(2, key.floor ? 1 : 0);
     query.bind(3, key.index);

@@ -11,7 +11,6 @@
 #include <future>
 #include <iostream>
 #include <optional>
-#include <random>
 #include <utility>
 
 #include "case/load.hpp"
@@ -21,13 +20,16 @@
 #include "cli/version.hpp"
 #include "figures/figures.hpp"
 #include "io/checkpoint.hpp"
-#include "io/files.hpp"
 #include "io/history.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
 #include "math/angle.hpp"
 #include "monte_carlo/realization.hpp"
 #include "simulation/simulation.hpp"
+#include "support/files.hpp"
+#include "support/output_directory.hpp"
+#include "support/seed.hpp"
+#include "support/text.hpp"
 
 namespace talus::cli {
 namespace {
@@ -57,8 +59,7 @@ std::string utc_now() {
   return text;
 }
 
-/// --seed, else the interrupted run's own, else the case's, else one from the machine's entropy. Never more than 53
-/// bits, so that every reader of JSON keeps it exact.
+/// --seed, else the interrupted run's own, else the case's, else random_seed().
 std::uint64_t choose_seed(const RunOptions& options, const LoadedCase& loaded) {
   if (options.seed) return *options.seed;
   const fs::path earlier = options.out / "case.resolved.json";
@@ -69,8 +70,7 @@ std::uint64_t choose_seed(const RunOptions& options, const LoadedCase& loaded) {
       return document[seed];
   }
   if (loaded.value.study.seed) return *loaded.value.study.seed;
-  std::random_device entropy;
-  return ((std::uint64_t{entropy()} << 32) | entropy()) & ((1ull << 53) - 1);
+  return random_seed();
 }
 
 /// The run's files and when each is due. Snapshots are written by a thread of their own, the first one too.
@@ -293,7 +293,7 @@ void add_run(CLI::App& app, Action& action) {
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--seed", options->seed,
                    "Seed of the random field; default: the case's, else a random one, which is recorded")
-      ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));  // what every reader of JSON keeps exact
+      ->check(CLI::Range(std::int64_t{0}, max_exact_integer));  // what every reader of JSON keeps exact
   verb->add_option("--threads", options->threads, "OpenMP threads; the result does not depend on them")
       ->check(CLI::Range(1, 4096));
   add_overrides(*verb, options->overrides);

@@ -13,14 +13,17 @@
 #include <thread>
 
 #include "case/load.hpp"
+#include "case/study_plan.hpp"
 #include "cli/signals.hpp"
 #include "cli/verbs.hpp"
 #include "cli/version.hpp"
 #include "executor/slurm.hpp"
 #include "figures/figures.hpp"
-#include "io/files.hpp"
 #include "study/driver.hpp"
 #include "study/paths.hpp"
+#include "support/files.hpp"
+#include "support/seed.hpp"
+#include "support/text.hpp"
 
 namespace talus::cli {
 namespace {
@@ -28,7 +31,6 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint64_t most_exact_integer = (std::uint64_t{1} << 53) - 1;  ///< what every reader of JSON keeps exact
 constexpr std::size_t max_summary_bytes = std::size_t{256} << 20;
 
 struct StudyOptions {
@@ -87,12 +89,12 @@ class Reporter {
   Clock::time_point shown_ = Clock::now();
 };
 
-/// --seed, else the case's, else that of the study already begun in --out, else one from the clock.
+/// --seed, else the case's, else that of the study already begun in --out, else random_seed().
 std::uint64_t choose_seed(const StudyOptions& options, const Case& problem) {
   if (options.seed) return *options.seed;
   if (problem.study.seed) return *problem.study.seed;
   const std::optional<Plan> begun = find_plan(options.out);
-  return begun ? begun->seed : seed_from_clock();
+  return begun ? begun->seed : random_seed();
 }
 
 constexpr int slurm_attempts = 5;  ///< machines differ, and people cancel jobs
@@ -202,7 +204,7 @@ void add_study(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 1'000'000'000));
   verb->add_option("--seed", options->seed,
                    "seed of the random fields; otherwise the case's, otherwise a new one, which is recorded")
-      ->check(CLI::Range(std::uint64_t{0}, most_exact_integer));
+      ->check(CLI::Range(std::int64_t{0}, max_exact_integer));
   verb->add_option("--workers", options->workers, "processes at a time; otherwise cores / threads")
       ->check(CLI::Range(1, 4096));
   verb->add_option("--threads", options->threads, "OpenMP threads of each process")->check(CLI::Range(1, 4096));

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "monte_carlo/study_spec.hpp"
 #include "random_field/field_spec.hpp"
 #include "simulation/simulation.hpp"
+#include "study/spec.hpp"
 
 namespace talus {
 

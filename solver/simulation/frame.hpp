@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "math/vec2.hpp"
+#include "support/measures.hpp"
 
 namespace talus {
 
@@ -26,15 +27,6 @@ struct Frame {
   std::vector<double> tan_phi;                ///< tangent of the friction angle [-]; 0 for walls
   std::vector<double> shear_rate;             ///< gamma_dot [1/s]
   std::vector<std::array<double, 4>> stress;  ///< sigma xx, yy, zz, xy [Pa], positive in tension
-};
-
-/// Where the slide ended; every x is measured from the left boundary. [m]
-struct Measures {
-  double influence_zone = 0.0;    ///< farthest soil particle, the paper's measure
-  double front_connected = 0.0;   ///< farthest particle of the largest body linked by gaps of at most 1.5 dx
-  double front_mass_99 = 0.0;     ///< beyond it lies 1 % of the mass
-  double front_mass_999 = 0.0;    ///< beyond it lies 0.1 % of the mass
-  double centre_of_mass_x = 0.0;  ///< mean x of the mass
 };
 
 /// The random field of a run in three numbers.

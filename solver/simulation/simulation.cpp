@@ -6,8 +6,8 @@
 #include <limits>
 #include <numeric>
 
-#include "math/error.hpp"
 #include "simulation/observables.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

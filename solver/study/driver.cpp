@@ -13,12 +13,14 @@
 #include <thread>
 
 #include "executor/local.hpp"
-#include "io/files.hpp"
-#include "monte_carlo/statistics.hpp"
+#include "statistics/sample.hpp"
 #include "study/ledger.hpp"
 #include "study/publish.hpp"
 #include "study/stop_rule.hpp"
 #include "study/summary.hpp"
+#include "support/files.hpp"
+#include "support/output_directory.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
@@ -42,10 +44,7 @@ struct Worker {
 };
 
 /// 1e-6 k in the shortest form that reads back.
-std::string perturbation(std::int64_t k) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, static_cast<double>(k) / 1e6).ptr};
-}
+std::string perturbation(std::int64_t k) { return to_text(static_cast<double>(k) / 1e6); }
 
 std::unique_ptr<Executor> make_executor(const DriverOptions& options, const StudyPaths& paths) {
   if (options.make_executor) return options.make_executor(paths);

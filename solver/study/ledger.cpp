@@ -4,8 +4,9 @@
 #include <charconv>
 #include <cstdint>
 
-#include "io/files.hpp"
-#include "io/result_json.hpp"
+#include "study/run_file.hpp"
+#include "support/files.hpp"
+#include "support/json.hpp"
 
 namespace talus {
 namespace {
@@ -37,7 +38,7 @@ void insert(std::vector<Record>& records, Record record) {
 /// The reason in a file that commit_failure wrote; nothing where it cannot be read.
 std::optional<std::string> failure_reason(const fs::path& file) {
   try {
-    return ordered_json::parse(read_file(file, max_failure_bytes)).at("reason").get<std::string>();
+    return read_json(file, max_failure_bytes).at("reason").get<std::string>();
   } catch (const nlohmann::json::exception&) {
   } catch (const IoError&) {
   }
@@ -98,18 +99,17 @@ void Ledger::scan(bool floor) {
 }
 
 std::optional<Record> Ledger::read(Job job, const fs::path& file) const {
-  std::optional<std::pair<RunResult, Provenance>> result;
+  std::optional<RunFile> run;
   try {
-    result = read_result(file);
+    run = read_run_file(file, job.index);
   } catch (const IoError&) {
     return std::nullopt;  // missing, or damaged by a crash of the machine: the job is simply run again
   }
-  const auto& [run, provenance] = *result;
   const std::int64_t realization = job.floor ? 0 : job.index;
-  if (provenance.seed != seed_ || provenance.case_hash != case_hash_ || provenance.realization != realization)
+  if (run->seed != seed_ || run->case_hash != case_hash_ || run->realization != realization)
     throw IoError(file.string() + " is of another study (seed, case hash or realization differ); remove it");
-  if (run.ending == Ending::interrupted) return std::nullopt;
-  return done_record(job.index, run);
+  if (run->interrupted) return std::nullopt;
+  return std::move(run->record);
 }
 
 bool Ledger::has(Job job) const {

@@ -1,11 +1,10 @@
 #pragma once
 // One line of a study's books: what became of one realization.
 
-#include <array>
 #include <cstdint>
 #include <string>
 
-#include "simulation/frame.hpp"
+#include "support/measures.hpp"
 
 namespace talus {
 
@@ -21,19 +20,5 @@ struct Record {
   std::string digest = {};  ///< of the final state
   std::string reason = {};  ///< why it failed, one line; empty if done
 };
-
-/// The record of a run that came to its end.
-Record done_record(std::int64_t index, const RunResult& result);
-
-/// The measures by the name they have in every file.
-struct MeasureColumn {
-  const char* key;
-  double Measures::*member;
-};
-inline constexpr std::array<MeasureColumn, 5> measure_columns{{{"influence_zone_m", &Measures::influence_zone},
-                                                               {"front_connected_m", &Measures::front_connected},
-                                                               {"front_mass_99_m", &Measures::front_mass_99},
-                                                               {"front_mass_999_m", &Measures::front_mass_999},
-                                                               {"centre_of_mass_x_m", &Measures::centre_of_mass_x}}};
 
 }  // namespace talus

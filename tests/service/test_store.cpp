@@ -89,7 +89,7 @@ TEST_F(StoreTest, AResultCountsOnlyFromTheCurrentAttempt) {
   EXPECT_TRUE(store->accept(second, result(2)));
   EXPECT_FALSE(store->accept(second, result(3)));
   EXPECT_EQ(job("one").done, 1);
-  EXPECT_EQ(store->run(second.run)->result->measures[0], 2);
+  EXPECT_EQ(store->run(second.run)->result->measures.influence_zone, 2);
 }
 
 TEST_F(StoreTest, HeartbeatsKeepALeaseAndTellOfALostOne) {
@@ -361,6 +361,20 @@ TEST_F(StoreTest, WhatIsCommittedIsOnTheDisk) {
     EXPECT_EQ(db.execAndGet("PRAGMA synchronous").getInt(), 2);  // FULL
     EXPECT_EQ(db.execAndGet("PRAGMA foreign_keys").getInt(), 1);
   });
+}
+
+TEST_F(StoreTest, ADatabaseFromBeforeAMeasureGetsItsColumn) {
+  add("one", 1);
+  const Claim claim = *store->claim(lease);
+  ASSERT_TRUE(store->accept(claim, result(7.5)));
+  store.reset();
+  SQLite::Database((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE)
+      .exec("ALTER TABLE runs DROP COLUMN front_mass_999_m");
+  store = open();
+  const auto run = store->run(claim.run);
+  ASSERT_TRUE(run && run->result);
+  EXPECT_EQ(run->result->measures.influence_zone, 7.5);
+  EXPECT_EQ(run->result->measures.front_mass_999, 0.0);
 }
 
 TEST_F(StoreTest, ANewerDatabaseIsRefused) {

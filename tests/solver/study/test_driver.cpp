@@ -8,10 +8,10 @@
 #include <thread>
 
 #include "executor/process.hpp"
-#include "math/error.hpp"
 #include "studies.hpp"
 #include "study/csv.hpp"
 #include "study/driver.hpp"
+#include "support/error.hpp"
 
 using namespace talus;
 using namespace talus::fixtures;

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "monte_carlo/statistics.hpp"
+#include "statistics/sample.hpp"
 #include "studies.hpp"
 #include "study/stop_rule.hpp"
 

@@ -1,5 +1,5 @@
-#include "monte_carlo/histogram.hpp"
 #include "schema_check.hpp"
+#include "statistics/histogram.hpp"
 #include "studies.hpp"
 #include "study/summary.hpp"
 
@@ -53,7 +53,7 @@ TEST(Summary, CountsWhatWasPlannedMadeAndMissed) {
 
 TEST(Summary, StatisticsOfEachMeasureAreThoseOfItsColumn) {
   const auto study = summarize(plan(8), some_runs(), {});
-  for (const MeasureColumn& column : measure_columns) {
+  for (const Measure& column : measure_table) {
     std::vector<double> sample;
     for (const Record& r : some_runs())
       if (r.done) sample.push_back(r.measures.*column.member);
