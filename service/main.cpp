@@ -9,16 +9,16 @@
 #include <iostream>
 #include <thread>
 
+#include "base/log.hpp"
 #include "http/server.hpp"
 #include "http/service.hpp"
 #include "options.hpp"
-#include "support/log.hpp"
+#include "support/files.hpp"
 
 namespace {
 
+using namespace talus;
 using namespace talus::service;
-
-enum Exit : int { ok = 0, internal = 1, usage = 2, io = 5 };
 
 /// The signals that ask us to stop, kept from every thread so that main can wait for them.
 sigset_t hold_stop_signals() {
@@ -41,12 +41,12 @@ void raise_file_limit() {
 
 /// Takes a lock; a killed process keeps it for a moment longer.
 /// @param inherited  whether workers hold it, too
-Descriptor wait_for_lock(const std::filesystem::path& path, bool inherited, std::chrono::seconds patience,
-                         const std::string& otherwise) {
+FileDescriptor wait_for_lock(const std::filesystem::path& path, bool inherited, std::chrono::seconds patience,
+                             const std::string& otherwise) {
   const auto end = std::chrono::steady_clock::now() + patience;
   for (;;) {
-    if (Descriptor lock = try_lock(path, inherited)) return lock;
-    if (std::chrono::steady_clock::now() > end) throw FileError(otherwise);
+    if (FileDescriptor lock = try_lock(path, inherited)) return lock;
+    if (std::chrono::steady_clock::now() > end) throw IoError(otherwise);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
 }
@@ -72,14 +72,15 @@ int serve(Config config) {
   const Tokens tokens = config.tokens.empty() ? Tokens() : Tokens(config.tokens);
   const DataDirectory data{config.data};
   for (const auto& directory : {data.root, data.jobs(), data.scratch()}) std::filesystem::create_directories(directory);
-  const Descriptor lock =
+  const FileDescriptor lock =
       wait_for_lock(data.lock(), false, std::chrono::seconds(1), "another talusd is using " + data.root.string());
   // When talusd was killed its workers die with it, but not at once; two of them in one directory would spoil it.
-  const Descriptor workers_lock =
+  const FileDescriptor workers_lock =
       wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
                     "workers of an earlier talusd still run in " + data.root.string() + "; stop them first");
 
-  Store store(data.database(), system_now);
+  talus::service::Store store(data.database(), data.jobs(), system_now,
+                              std::chrono::duration_cast<std::chrono::milliseconds>(config.lease).count());
   Changes changes;
   Scheduler scheduler(config, store, changes);
   Jobs jobs(config, store, scheduler, changes);
@@ -101,8 +102,8 @@ int serve(Config config) {
                 [&](const Incoming& request) { return answer(request, router, service, tokens); });
   config.port = server.bind(config.address, config.port);
   if (config.port == 0)
-    throw FileError("cannot listen on " + config.address +
-                    ": the port is in use, or the address does not belong to this host");
+    throw IoError("cannot listen on " + config.address +
+                  ": the port is in use, or the address does not belong to this host");
   scheduler.start();
   std::thread http([&] { server.serve(); });
   std::cout << "talusd " << TALUS_VERSION << " listens on " << url_of(config) << std::endl;
@@ -121,7 +122,7 @@ int serve(Config config) {
   server.stop();
   http.join();
   log_info("stopped");
-  return Exit::ok;
+  return static_cast<int>(Exit::ok);
 }
 
 }  // namespace
@@ -133,20 +134,20 @@ int main(int argc, char** argv) {
     if (!options.new_token.empty()) {
       const auto [token, line] = new_token(options.new_token[0], options.new_token[1]);
       std::cout << "token: " << token << "\nline for the tokens file: " << line << "\n";
-      return Exit::ok;
+      return static_cast<int>(Exit::ok);
     }
     return serve(options.config);
-  } catch (const FileError& e) {
+  } catch (const IoError& e) {
     std::cerr << "talusd: " << e.what() << "\n";
-    return Exit::io;
+    return static_cast<int>(Exit::io);
   } catch (const StorageError& e) {
     std::cerr << "talusd: " << e.what() << "\n";
-    return Exit::io;
+    return static_cast<int>(Exit::io);
   } catch (const std::filesystem::filesystem_error& e) {
     std::cerr << "talusd: " << e.what() << "\n";
-    return Exit::io;
+    return static_cast<int>(Exit::io);
   } catch (const std::exception& e) {
     std::cerr << "talusd: " << e.what() << "\n";
-    return Exit::internal;
+    return static_cast<int>(Exit::internal);
   }
 }

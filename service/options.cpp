@@ -124,7 +124,11 @@ Options read_options(int argc, char** argv) {
   config.lease = std::chrono::seconds(lease);
   config.body_bytes = static_cast<std::size_t>(body_mib * 1048576.0);
   config.quotas.disk_bytes = static_cast<std::uint64_t>(min_disk_mib * 1048576.0);
-  config.memory_bytes = memory_mib < 0 ? 1 : static_cast<std::uint64_t>(memory_mib * 1048576.0);
+  using MemoryLimit = Config::MemoryLimit;
+  config.memory_limit = memory_mib < 0    ? MemoryLimit::none
+                        : memory_mib == 0 ? MemoryLimit::by_size
+                                          : MemoryLimit::fixed;
+  if (memory_mib > 0) config.memory_bytes = static_cast<std::uint64_t>(memory_mib * 1048576.0);
   if (config.data.empty())
     options.exit = wrong("--data DIR is required");
   else if (const std::string why = split_listen(listen, config); !why.empty())

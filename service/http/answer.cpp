@@ -1,9 +1,9 @@
 #include <chrono>
 
+#include "base/digest.hpp"
+#include "base/log.hpp"
 #include "http/problem.hpp"
 #include "http/service.hpp"
-#include "support/digest.hpp"
-#include "support/log.hpp"
 
 namespace talus::service {
 namespace {

@@ -49,7 +49,7 @@ class Connection {
   Got receive(Clock::time_point deadline);
   bool wait_for(short events, Clock::time_point deadline) const;
 
-  Descriptor fd_;
+  FileDescriptor fd_;
   const GuardLimits& limits_;
   Timing timing_;
   std::function<bool()> stopping_;

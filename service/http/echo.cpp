@@ -5,6 +5,7 @@
 #include <map>
 
 #include "jobs/inputs.hpp"
+#include "support/faults.hpp"
 
 namespace talus::service {
 namespace {
@@ -55,7 +56,7 @@ Json read_echo_inputs(const Json& inputs) {
   Checker check;
   Json bare = Json::object();
   for (const auto& [name, given] : inputs.items()) {
-    const std::string pointer = "/inputs" + pointer_token(name);
+    const std::string pointer = pointer_to("/inputs", name);
     const auto test = tests().find(name);
     if (test == tests().end()) {
       check.fault(pointer, "is not an input of this process");

@@ -1,7 +1,7 @@
 #pragma once
 // The process echo, which returns its inputs.
 
-#include "support/json.hpp"
+#include "base/json.hpp"
 
 namespace talus::service {
 

@@ -34,7 +34,7 @@ Request read_request(const Incoming& incoming, const std::vector<std::string>& k
   const std::string type = lower_trimmed(incoming.header("content-type"));
   if (!type.empty() && type.find("json") == std::string::npos)
     throw Refusal(Reason::unsupported_media_type, "send the body as Content-Type: application/json");
-  const Json body = parse_json(incoming.body);
+  const Json body = parse_body(incoming.body);
   Checker check;
   Request request;
   if (!body.is_object()) throw Refusal(Reason::bad_request, "the request body is invalid", {{"", "must be an object"}});

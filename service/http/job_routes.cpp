@@ -87,7 +87,7 @@ Answer results(Exchange& exchange, Service& service) {
   for (const std::string& output : outputs) {
     if (output == "summary") values[output] = service.jobs.summary(job);
     if (output == "histogram")
-      values[output] = service.jobs.distribution(job, quantity_index(asked.at("quantity"), ""), {}, {});
+      values[output] = service.jobs.distribution(job, quantity_of(asked.at("quantity"), ""), {});
   }
   return results_answer(values, raw, exchange.request);
 }

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/digest.hpp"
 #include "http/links.hpp"
-#include "support/digest.hpp"
 
 namespace talus::service {
 namespace {

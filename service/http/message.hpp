@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "support/json.hpp"
+#include "base/json.hpp"
 
 namespace talus::service {
 

@@ -3,9 +3,9 @@
 #include <cerrno>
 #include <filesystem>
 
+#include "base/log.hpp"
 #include "queue/database.hpp"
 #include "support/files.hpp"
-#include "support/log.hpp"
 
 namespace talus::service {
 namespace {
@@ -97,7 +97,7 @@ Answer problem(std::exception_ptr thrown, const std::string& accept) {
   } catch (const StorageError& e) {
     log_error("storage", {{"why", e.what()}});
     return problem(refusal_of(e), accept);
-  } catch (const FileError& e) {
+  } catch (const IoError& e) {
     return file_problem(e.error, e.what(), accept);
   } catch (const std::filesystem::filesystem_error& e) {
     return file_problem(e.code().value(), e.what(), accept);

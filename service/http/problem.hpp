@@ -1,8 +1,8 @@
 #pragma once
 // RFC 9457 problem documents: one table from reason of refusal to status.
 
+#include "base/refusal.hpp"
 #include "http/message.hpp"
-#include "support/refusal.hpp"
 
 namespace talus::service {
 

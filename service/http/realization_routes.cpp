@@ -52,20 +52,20 @@ Answer histogram(Exchange& exchange, Service& service) {
   const Job job = study_of(exchange, service);
   only_parameters(request, {"quantity", "bins", "edges"});
   const std::string name = request.parameter("quantity").value_or(Json::parse(job.inputs).at("quantity"));
-  const int quantity = quantity_index(name, "?quantity");
+  const Measure& quantity = quantity_of(name, "?quantity");
   const auto bins = whole_number(request, "bins", 1, max_bins);
   const std::vector<double> edges = edges_of(request);
   if (bins && !edges.empty()) bad_parameter("bins", "cannot be combined with edges");
   Json answer =
-      service.jobs.distribution(job, quantity, bins ? std::optional(static_cast<int>(*bins)) : std::nullopt, edges);
+      service.jobs.distribution(job, quantity, {.count = static_cast<std::size_t>(bins.value_or(0)), .edges = edges});
   answer["partial"] = !ended(job.state);
   answer["bins"] = bins_of(answer, exchange, job);
   return json_answer(answer);
 }
 
-Json measures_of(const RunResult& result) {
+Json measures_of(const Record& result) {
   Json all = Json::object();
-  for (std::size_t i = 0; i < measure_names.size(); ++i) all[measure_names[i]] = result.measures[i];
+  for (const Measure& measure : measure_table) all[measure.key] = result.measures.*measure.member;
   return all;
 }
 
@@ -90,7 +90,7 @@ Answer list_realizations(Exchange& exchange, Service& service) {
     filter.state = run_state(*name);
     if (!filter.state) bad_parameter("state", "must be queued, leased, done or failed");
   }
-  filter.measure = quantity_index(request.parameter("quantity").value_or(measure_names[0]), "?quantity");
+  filter.measure = &quantity_of(request.parameter("quantity").value_or(measure_table[0].key), "?quantity");
   filter.least = real_number(request, "min");
   filter.below = real_number(request, "below");
   filter.most = real_number(request, "max");
@@ -116,7 +116,7 @@ Run run_of(const Exchange& exchange, Service& service, const Job& job) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
   std::optional<Run> run;
   if (error == std::errc() && end == text.data() + text.size() && index >= 0)
-    run = service.store.run({job.number, false, index});
+    run = service.store.run(job.number, realization(index));
   if (!run) throw Refusal(Reason::not_found, "the study has no such realization");
   return *run;
 }
@@ -128,9 +128,9 @@ Answer one(Exchange& exchange, Service& service) {
   json["seed"] = job.seed;
   json["case_hash"] = job.case_hash;
   json["attempt"] = run.attempt;
-  json["command"] = replay_command(run.key, job.seed);
+  json["command"] = replay_command(run.key, static_cast<std::uint64_t>(job.seed), "case.resolved.json");
   if (run.result) {
-    json["mean_friction_angle_deg"] = run.result->mean_friction_angle_deg;
+    json["mean_friction_angle_deg"] = run.result->mean_phi_deg;
     json["steps"] = run.result->steps;
     json["wall_clock_s"] = run.result->wall_clock;
   }
@@ -184,7 +184,7 @@ Answer retry(Exchange& exchange, Service& service) {
 Answer extend(Exchange& exchange, Service& service) {
   if (auto again = told_before(exchange, service)) return *again;
   const Job job = study_of(exchange, service);
-  const Json body = parse_json(exchange.request.body);
+  const Json body = parse_body(exchange.request.body);
   const bool good = body.is_object() && body.contains("realizations") && body.at("realizations").is_number_integer() &&
                     body.at("realizations") >= 1 && body.at("realizations") <= most_realizations;
   if (!good || body.size() != 1)

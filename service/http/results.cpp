@@ -1,6 +1,6 @@
 #include "http/results.hpp"
 
-#include "support/digest.hpp"
+#include "base/digest.hpp"
 
 namespace talus::service {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <atomic>
 
+#include "base/clock.hpp"
+#include "base/log.hpp"
 #include "http/problem.hpp"
-#include "support/clock.hpp"
-#include "support/log.hpp"
 
 namespace talus::service {
 namespace {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "support/digest.hpp"
+#include "base/digest.hpp"
 #include "support/files.hpp"
 
 namespace talus::service {
@@ -26,7 +26,7 @@ std::optional<Role> role_of(const std::string& word) {
 }  // namespace
 
 Tokens::Tokens(const std::filesystem::path& file) : wanted_(true) {
-  const auto text = read_file(file, 1 << 20);
+  const auto text = find_file(file, 1 << 20);
   if (!text) throw std::runtime_error("cannot open the tokens file " + file.string());
   std::istringstream lines(*text);
   int number = 0;

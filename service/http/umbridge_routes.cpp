@@ -52,7 +52,7 @@ Json model_of(const Json& body, const Config& config) {
   const std::vector<std::string> known = models(config);
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw ProtocolError{"ModelNotFound", "Model '" + name + "' is not served here"};
-  return Json::parse(read_file(config.models / (name + ".json"), max_case_bytes).value_or("{}"));
+  return Json::parse(find_file(config.models / (name + ".json"), max_case_bytes).value_or("{}"));
 }
 
 /// The parameters that config names.
@@ -123,7 +123,7 @@ Json evaluate(const Json& body, Json document, Service& service, Terms& terms) {
   document.erase("study");
   const Json result = service.jobs.evaluate(document);
   Json front = Json::array();
-  for (const char* name : measure_names) front.push_back(result.at(name));
+  for (const Measure& measure : measure_table) front.push_back(result.at(measure.key));
   return {{"output", Json::array({front})}};
 }
 
@@ -154,7 +154,7 @@ void add_umbridge_routes(Router& router, Service& service) {
   const auto post = [&](const char* path, Role role, Feature feature) {
     router.add("POST", path, role, [&service, feature](Exchange& exchange) {
       return guarded([&] {
-        const Json body = parse_json(exchange.request.body);
+        const Json body = parse_body(exchange.request.body);
         return feature(body, model_of(body, service.config));
       });
     });
@@ -166,7 +166,7 @@ void add_umbridge_routes(Router& router, Service& service) {
     return {{"inputSizes", sizes(body, document, service, *terms)}};
   });
   post("/OutputSizes", Role::read, [](const Json&, const Json&) -> Json {
-    return {{"outputSizes", {measure_names.size()}}};
+    return {{"outputSizes", {measure_table.size()}}};
   });
   post("/Evaluate", Role::submit,
        [&service, terms](const Json& body, const Json& document) { return evaluate(body, document, service, *terms); });

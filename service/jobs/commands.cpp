@@ -1,19 +1,15 @@
 #include "jobs/commands.hpp"
 
-#include <charconv>
 #include <cstdlib>
+
+#include "support/run_memory.hpp"
 
 namespace talus::service {
 namespace {
 
 constexpr std::uint64_t quick_memory = std::uint64_t{4} << 30;
-constexpr double bytes_per_particle = 3000.0;  ///< several times what a run was measured to take
-constexpr double bytes_at_least = 2e9;         ///< address space of program, libraries and thread stacks
-
-std::string number(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
+constexpr double reserve = 6.0;          ///< address space of a run's data, as a multiple of the memory that it takes
+constexpr double reserved_always = 2e9;  ///< address space of the program, its libraries and thread stacks [bytes]
 
 /// Nothing of ours but what a run needs; the last few decide only how it computes or reports.
 std::vector<std::string> environment(int threads) {
@@ -30,18 +26,17 @@ Command Commands::quick(std::vector<std::string> arguments) const {
   arguments.insert(arguments.begin(), config_.program.string());
   Command command{.arguments = std::move(arguments), .environment = environment(1)};
   command.limits.core_dumps = false;
-  if (config_.memory_bytes != 1) command.limits.memory_bytes = quick_memory;
+  if (config_.memory_limit != Config::MemoryLimit::none) command.limits.memory_bytes = quick_memory;
   command.limits.cpu_seconds = 120;
   command.limits.file_bytes = config_.file_bytes;
   return command;
 }
 
-/// memory_bytes 0: from the size of the case; 1: no limit (sanitizers reserve terabytes of address space).
 Limits Commands::run_limits(double particles) const {
   Limits limits;
-  if (config_.memory_bytes > 1) limits.memory_bytes = config_.memory_bytes;
-  if (config_.memory_bytes == 0)
-    limits.memory_bytes = static_cast<std::uint64_t>(bytes_at_least + bytes_per_particle * particles);
+  if (config_.memory_limit == Config::MemoryLimit::fixed) limits.memory_bytes = config_.memory_bytes;
+  if (config_.memory_limit == Config::MemoryLimit::by_size)
+    limits.memory_bytes = static_cast<std::uint64_t>(reserved_always + reserve * run_memory(particles));
   limits.cpu_seconds =
       static_cast<std::uint64_t>(config_.time_limit.count()) * static_cast<std::uint64_t>(config_.threads) + 60;
   limits.file_bytes = config_.file_bytes;
@@ -54,7 +49,8 @@ Limits Commands::run_limits(double particles) const {
 Command Commands::heavy(std::vector<std::string> arguments) const {
   Command command = quick(std::move(arguments));
   command.limits = run_limits(0.0);
-  command.limits.memory_bytes = config_.memory_bytes > 1 ? config_.memory_bytes : 0;
+  const bool fixed = config_.memory_limit == Config::MemoryLimit::fixed;
+  command.limits.memory_bytes = fixed ? config_.memory_bytes : 0;
   command.environment = environment(config_.threads);
   command.niceness = config_.niceness;
   return command;
@@ -64,26 +60,20 @@ Command Commands::validate(const std::filesystem::path& case_file) const {
   return quick({"validate", case_file.string(), "--json"});
 }
 
-Command Commands::prepare(const std::filesystem::path& case_file, const StudyDirectory& study,
-                          std::int64_t realizations, std::int64_t seed) const {
+Command Commands::prepare(const std::filesystem::path& case_file, const StudyPaths& study, std::int64_t realizations,
+                          std::int64_t seed) const {
   return quick({"study", case_file.string(), "--out", study.root.string(), "--realizations",
                 std::to_string(realizations), "--seed", std::to_string(seed), "--prepare"});
 }
 
-Command Commands::run(const StudyDirectory& study, const Claim& claim, double particles) const {
-  Command command{.arguments = {config_.program.string(), "run", study.resolved_case().string(), "--realization",
-                                std::to_string(claim.run.floor ? 0 : claim.run.index), "--seed",
-                                std::to_string(claim.seed), "--threads", std::to_string(config_.threads), "--out",
-                                study.work(claim.run).string(), "--study-worker"},
-                  .environment = environment(config_.threads),
-                  .limits = run_limits(particles),
-                  .niceness = config_.niceness};
-  if (claim.run.floor)
-    command.arguments.insert(command.arguments.end(), {"--perturbation", perturbation(claim.run.index)});
-  return command;
+Command Commands::run(const StudyInfo& study, const RunKey& key, double particles) const {
+  return {.arguments = run_arguments({config_.program.string(), "run"}, study, key, config_.threads),
+          .environment = environment(config_.threads),
+          .limits = run_limits(particles),
+          .niceness = config_.niceness};
 }
 
-Command Commands::replay(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
+Command Commands::replay(const StudyPaths& study, const RunKey& run, std::int64_t seed,
                          const std::filesystem::path& out) const {
   return heavy({"run", study.resolved_case().string(), "--realization", std::to_string(run.index), "--seed",
                 std::to_string(seed), "--threads", std::to_string(config_.threads), "--out", out.string(),
@@ -95,23 +85,7 @@ Command Commands::median(const std::filesystem::path& case_file, const std::file
                 out.string(), "--study-worker"});
 }
 
-Command Commands::stats(const StudyDirectory& study) const {
-  return quick({"stats", study.root.string(), "--from-runs"});
-}
-
-Command Commands::distribution(const StudyDirectory& study, int quantity, std::optional<int> bins,
-                               const std::vector<double>& edges) const {
-  Command command = quick({"stats", study.root.string(), "--from-runs", "--quantity",
-                           measure_names.at(static_cast<std::size_t>(quantity))});
-  if (bins) command.arguments.insert(command.arguments.end(), {"--bins", std::to_string(*bins)});
-  if (edges.empty()) return command;
-  std::string list = "--edges=";
-  for (const double edge : edges) list += (list.back() == '=' ? "" : ",") + number(edge);
-  command.arguments.push_back(std::move(list));
-  return command;
-}
-
-Command Commands::field(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
+Command Commands::field(const StudyPaths& study, const RunKey& run, std::int64_t seed,
                         const std::filesystem::path& out) const {
   return quick({"field", study.resolved_case().string(), "--realization", std::to_string(run.index), "--seed",
                 std::to_string(seed), "--out", out.string(), "--json"});

@@ -4,23 +4,24 @@
 #include <cmath>
 
 #include "queue/records.hpp"
+#include "support/faults.hpp"
+#include "support/text.hpp"
 
 namespace talus::service {
 namespace {
 
-constexpr std::int64_t most_exact_integer = (std::int64_t{1} << 53) - 1;
 constexpr std::int64_t most_replicates = 1000;
 
 /// Files beside the case are for people at the machine; over HTTP they would be ours.
 void refuse_files(const Json& value, const std::string& pointer, Checker& check) {
   if (value.is_object()) {
     for (const auto& [key, member] : value.items()) {
-      const std::string place = pointer + pointer_token(key);
+      const std::string place = pointer_to(pointer, key);
       if (key.ends_with("_csv")) check.fault(place, "names a file; over HTTP give the vertices themselves");
       refuse_files(member, place, check);
     }
   } else if (value.is_array()) {
-    for (std::size_t i = 0; i < value.size(); ++i) refuse_files(value[i], pointer + "/" + std::to_string(i), check);
+    for (std::size_t i = 0; i < value.size(); ++i) refuse_files(value[i], pointer_to(pointer, i), check);
   }
 }
 
@@ -61,7 +62,7 @@ std::vector<std::string> read_outputs(const Json& request, const std::vector<std
   }
   std::vector<std::string> wanted;
   for (const auto& [name, how] : outputs.items()) {
-    const std::string pointer = "/outputs" + pointer_token(name);
+    const std::string pointer = pointer_to("/outputs", name);
     if (std::find(known.begin(), known.end(), name) == known.end())
       check.fault(pointer, "is not an output of this process");
     else if (!how.is_object())
@@ -74,12 +75,10 @@ std::vector<std::string> read_outputs(const Json& request, const std::vector<std
   return wanted.empty() ? known : wanted;
 }
 
-int quantity_index(const std::string& name, const std::string& pointer) {
+const Measure& quantity_of(const std::string& name, const std::string& pointer) {
+  if (const Measure* measure = find_measure(name)) return *measure;
   std::string names;
-  for (std::size_t i = 0; i < measure_names.size(); ++i) {
-    if (name == measure_names[i]) return static_cast<int>(i);
-    names += (i ? ", " : "") + std::string(measure_names[i]);
-  }
+  for (const Measure& measure : measure_table) names += (names.empty() ? "" : ", ") + std::string(measure.key);
   throw Refusal(Reason::bad_request, "no such quantity", {{pointer, "must be one of " + names}});
 }
 
@@ -90,7 +89,7 @@ StudyInputs read_study_inputs(const Json& inputs) {
     static constexpr const char* known[] = {
         "case", "realizations", "seed", "noise_floor_replicates", "max_failed_share", "histogram_edges_m", "quantity"};
     if (std::find(std::begin(known), std::end(known), key) == std::end(known))
-      check.fault("/inputs" + pointer_token(key), "is not an input of this process");
+      check.fault(pointer_to("/inputs", key), "is not an input of this process");
   }
   if (!inputs.contains("case")) {
     check.fault("/inputs/case", "is missing");
@@ -100,7 +99,7 @@ StudyInputs read_study_inputs(const Json& inputs) {
     refuse_files(study.document, "/inputs/case", check);
   }
   const auto realizations = integer(inputs, "realizations", 1, 1'000'000'000, check);
-  const auto seed = integer(inputs, "seed", 0, most_exact_integer, check);
+  const auto seed = integer(inputs, "seed", 0, max_exact_integer, check);
   const auto floor = integer(inputs, "noise_floor_replicates", 0, most_replicates, check);
   std::optional<Json> share, edges;
   if (inputs.contains("max_failed_share")) {
@@ -120,7 +119,7 @@ StudyInputs read_study_inputs(const Json& inputs) {
       study.quantity = quantity.get<std::string>();
   }
   check.finish(Reason::bad_request, "the inputs are not right");
-  quantity_index(study.quantity, "/inputs/quantity");
+  quantity_of(study.quantity, "/inputs/quantity");
 
   // The options are keys of the case's study; talus checks them there.
   Json& options = study.document["study"];

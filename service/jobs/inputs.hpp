@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "support/json.hpp"
+#include "base/json.hpp"
+#include "support/measures.hpp"
 
 namespace talus::service {
 
@@ -30,7 +31,7 @@ Json unqualified(const Json& input, const std::string& pointer, Checker& check);
 /// none are asked for
 std::vector<std::string> read_outputs(const Json& request, const std::vector<std::string>& known, Checker& check);
 
-/// The index of a quantity in measure_names. @throws Refusal bad_request naming `pointer`
-int quantity_index(const std::string& name, const std::string& pointer);
+/// The measure of this name. @throws Refusal bad_request naming `pointer`
+const Measure& quantity_of(const std::string& name, const std::string& pointer);
 
 }  // namespace talus::service

@@ -23,7 +23,7 @@ class Jobs {
   /// Checks a study with `talus validate`, refuses what is over the quotas, makes its directory and records it.
   /// @param raw  whether the client wants its results as they are, without a document around them
   /// @return nothing where `answer`'s Idempotency-Key has been used meanwhile
-  /// @throws Refusal, StorageError, FileError
+  /// @throws Refusal, StorageError, IoError
   std::optional<Job> submit_study(const std::string& subject, const Json& inputs,
                                   const std::vector<std::string>& outputs, bool raw, const Store::Answer& answer);
   std::optional<Job> submit_echo(const std::string& subject, const Json& inputs,
@@ -32,8 +32,8 @@ class Jobs {
   std::int64_t retry(const Job& job, const Store::Answer& answer);
   bool extend(const Job& job, std::int64_t more, const Store::Answer& answer);
 
-  /// How a quantity is distributed over what is done so far. @see Commands::distribution
-  Json distribution(const Job& job, int quantity, std::optional<int> bins, const std::vector<double>& edges);
+  /// How a quantity is distributed over what is done so far, from the records in the database.
+  Json distribution(const Job& job, const Measure& quantity, const Bins& bins);
   /// study.json of a job that has ended.
   Json summary(const Job& job) const;
   /// The friction angles before the slide; `svg` or JSON.
@@ -55,8 +55,8 @@ class Jobs {
   /// @param only_at  where every fault is; otherwise where the inputs of a submission say it
   void check_size(double particles, double steps, std::int64_t realizations, const std::string& only_at = "") const;
   void check_queue(const std::string& subject) const;
-  Outcome run(const Command& command, std::chrono::milliseconds limit, bool heavy = false);
-  [[noreturn]] void refuse_case(const Outcome& outcome, const std::string& pointer) const;
+  CommandOutput run(const Command& command, std::chrono::milliseconds limit, bool heavy = false);
+  [[noreturn]] void refuse_case(const CommandOutput& outcome, const std::string& pointer) const;
 
   const Config& config_;
   DataDirectory data_;

@@ -9,7 +9,7 @@
 #include <mutex>
 #include <string>
 
-#include "support/json.hpp"
+#include "base/json.hpp"
 
 namespace talus::service {
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "base/digest.hpp"
+#include "base/log.hpp"
 #include "jobs/jobs.hpp"
-#include "support/digest.hpp"
 #include "support/files.hpp"
-#include "support/log.hpp"
 
 namespace talus::service {
 namespace {
@@ -18,16 +18,17 @@ constexpr milliseconds behind{1000};       ///< that the histogram of a running 
 constexpr std::size_t profiles_kept = 16;  ///< of a job
 constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
-/// Removes all but the newest few files.
+/// Removes all but the newest few profiles that were asked for; those that the study keeps itself stay.
 void prune(const fs::path& directory, std::size_t keep) {
   std::vector<std::pair<fs::file_time_type, fs::path>> files;
-  for (const auto& entry : fs::directory_iterator(directory)) files.emplace_back(entry.last_write_time(), entry.path());
+  for (const auto& entry : fs::directory_iterator(directory))
+    if (run_of_work_name(entry.path().stem().string())) files.emplace_back(entry.last_write_time(), entry.path());
   std::sort(files.rbegin(), files.rend());
   std::error_code ignored;
   for (std::size_t i = keep; i < files.size(); ++i) fs::remove(files[i].second, ignored);
 }
 
-[[noreturn]] void broke(const Outcome& outcome, const char* what) {
+[[noreturn]] void broke(const CommandOutput& outcome, const char* what) {
   log_error("talus_broke",
             {{"exit_code", outcome.end.exit_code}, {"signal", outcome.end.signal}, {"said", outcome.err}});
   throw Refusal(Reason::internal, std::string(what) + " could not be made");
@@ -56,20 +57,22 @@ struct Scratch {
 
 }  // namespace
 
-Json Jobs::distribution(const Job& job, int quantity, std::optional<int> bins, const std::vector<double>& edges) {
+Json Jobs::distribution(const Job& job, const Measure& quantity, const Bins& bins) {
   const std::string key =
-      job.id + "/" + std::to_string(quantity) + "/" + std::to_string(bins.value_or(0)) + "/" + Json(edges).dump();
+      job.id + "/" + quantity.key + "/" + std::to_string(bins.count) + "/" + Json(bins.edges).dump();
   return distributions_.get(key, job.version, ended(job.state) ? milliseconds(0) : behind, [&] {
-    const Outcome outcome = run(commands_.distribution({data_.job(job.id)}, quantity, bins, edges), seconds(60));
-    if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the histogram");
-    Json answer = Json::parse(outcome.out);
+    std::optional<Plan> plan = find_plan(data_.job(job.id));
+    if (!plan) throw Refusal(Reason::internal, "the plan of the job is missing");
+    plan->study.realizations = job.planned;
+    const MeasureSample sample = store_.measure_sample(job, quantity, plan->study.stop_half_width);
+    Json answer = talus::distribution(*plan, quantity, sample, bins);
     drop_nulls(answer);
     return answer;
   });
 }
 
 Json Jobs::summary(const Job& job) const {
-  const auto text = read_file(StudyDirectory{data_.job(job.id)}.summary(), max_bytes);
+  const auto text = find_file(StudyPaths{data_.job(job.id)}.summary(), max_bytes);
   if (!text) throw Refusal(Reason::result_not_ready, "there are no statistics of this job");
   return Json::parse(*text);
 }
@@ -77,10 +80,10 @@ Json Jobs::summary(const Job& job) const {
 std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
   const Scratch scratch(data_.scratch());
   const fs::path file = scratch.path / (svg ? "field.svg" : "field.csv");
-  const RunKey run_key{job.number, false, index};
-  const Outcome outcome = run(commands_.field({data_.job(job.id)}, run_key, job.seed, file), seconds(60));
+  const CommandOutput outcome =
+      run(commands_.field({data_.job(job.id)}, realization(index), job.seed, file), seconds(60));
   if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the field");
-  const std::string text = read_file(file, max_bytes).value_or("");
+  const std::string text = find_file(file, max_bytes).value_or("");
   if (svg) return text;
   Json json = Json::parse(outcome.out);
   // The columns of the table: x_m, y_m, friction_angle_deg, tan_phi.
@@ -102,20 +105,20 @@ std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
 }
 
 std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
-  const StudyDirectory study{data_.job(job.id)};
+  const StudyPaths study{data_.job(job.id)};
   fs::create_directories(study.profiles());
   const fs::path kept = study.profiles() / (std::to_string(index) + (svg ? ".svg" : ".json"));
-  if (auto text = read_file(kept, max_bytes)) return *text;
+  if (auto text = find_file(kept, max_bytes)) return *text;
   const Scratch scratch(data_.scratch());
   const fs::path out = scratch.path / "run";
-  const Outcome again = run(commands_.replay(study, {job.number, false, index}, job.seed, out), seconds(3600), true);
+  const CommandOutput again = run(commands_.replay(study, realization(index), job.seed, out), seconds(3600), true);
   if (again.end.signal || again.end.exit_code != 0) broke(again, "the profile");
   const fs::path json = scratch.path / "profile.json", picture = scratch.path / "profile.svg";
   const fs::path& wanted = svg ? picture : json;
-  const Outcome made = run(commands_.profile(out, wanted), seconds(60));
+  const CommandOutput made = run(commands_.profile(out, wanted), seconds(60));
   if (made.end.signal || made.end.exit_code != 0) broke(made, "the profile");
-  const std::string text = read_file(wanted, max_bytes).value_or("");
-  write_file(kept, text);
+  const std::string text = find_file(wanted, max_bytes).value_or("");
+  write_file_atomically(kept, text);
   prune(study.profiles(), profiles_kept);
   return text;
 }
@@ -125,11 +128,11 @@ Json Jobs::evaluate(const Json& document) {
   const double count = particles.at("soil").get<double>() + particles.at("wall").get<double>();
   check_size(count, demand.at("steps").get<double>(), 1);
   const Scratch scratch(data_.scratch());
-  write_file(scratch.path / "case.json", dump(document));
-  const Outcome outcome =
+  write_file_atomically(scratch.path / "case.json", dump(document));
+  const CommandOutput outcome =
       run(commands_.median(scratch.path / "case.json", scratch.path / "run"), config_.time_limit, true);
   if (outcome.end.exit_code == 3 && !outcome.end.signal) throw Refusal(Reason::bad_request, outcome.err);
-  const auto text = read_file(scratch.path / "run" / "result.json", 1 << 20);
+  const auto text = find_file(scratch.path / "run" / "result.json", 1 << 20);
   if (outcome.end.signal || outcome.end.exit_code != 0 || !text)
     throw Refusal(Reason::internal, "the run failed: " + outcome.err);
   return Json::parse(*text);

@@ -18,15 +18,15 @@ constexpr std::size_t max_out_bytes = std::size_t{64} << 20;
 executor::Process started(const executor::Command& command, const fs::path& out, const fs::path& err) try {
   return executor::Process(command, out, err);
 } catch (const executor::ProcessError& e) {
-  FileError thrown(e.what());
+  IoError thrown(e.what());
   thrown.error = e.error;
   throw thrown;
 }
 
 }  // namespace
 
-Outcome run_to_end(const executor::Command& command, const fs::path& scratch, std::chrono::milliseconds limit,
-                   const std::function<bool()>& give_up) {
+CommandOutput run_to_end(const executor::Command& command, const fs::path& scratch, std::chrono::milliseconds limit,
+                         const std::function<bool()>& give_up) {
   static std::atomic<unsigned> counter{0};
   const fs::path stem = scratch / ("command-" + std::to_string(::getpid()) + "-" + std::to_string(counter++));
   const fs::path out = stem.string() + ".out", err = stem.string() + ".err";
@@ -35,7 +35,7 @@ Outcome run_to_end(const executor::Command& command, const fs::path& scratch, st
     ~Remover() { ::unlink(a.c_str()), ::unlink(b.c_str()); }
   } const remover{out, err};
 
-  Outcome outcome;
+  CommandOutput outcome;
   executor::Process child = started(command, out, err);
   const auto deadline = std::chrono::steady_clock::now() + limit;
   std::chrono::milliseconds nap{1};
@@ -47,7 +47,7 @@ Outcome run_to_end(const executor::Command& command, const fs::path& scratch, st
     nap = std::min(nap * 2, std::chrono::milliseconds(20));
   }
   outcome.end = *child.poll();
-  outcome.out = read_file(out, max_out_bytes).value_or("");
+  outcome.out = find_file(out, max_out_bytes).value_or("");
   outcome.err = executor::tail(err, 4000);
   return outcome;
 }

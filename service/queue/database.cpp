@@ -3,8 +3,11 @@
 #include <sqlite3.h>
 
 #include <iterator>
+#include <set>
+#include <string>
 
 #include "queue/schema.hpp"
+#include "support/measures.hpp"
 
 namespace talus::service {
 namespace {
@@ -17,6 +20,22 @@ void prepare(SQLite::Database& db) {
   db.exec("PRAGMA journal_mode = WAL");
   db.exec("PRAGMA synchronous = FULL");
   db.exec("PRAGMA foreign_keys = ON");
+}
+
+/// A measure that has joined the table since the database was made becomes a column; runs of before have no value.
+void add_measure_columns(SQLite::Database& db) {
+  std::set<std::string> columns;
+  for (SQLite::Statement query(db, "SELECT name FROM pragma_table_info('runs')"); query.executeStep();)
+    columns.insert(query.getColumn(0).getString());
+  std::string all;
+  for (const Measure& measure : measure_table) {
+    all += std::string(", ") + measure.key;
+    if (columns.contains(measure.key)) continue;
+    db.exec("DROP INDEX IF EXISTS runs_measures");
+    db.exec(std::string("ALTER TABLE runs ADD COLUMN ") + measure.key + " REAL");
+  }
+  // What histograms read: the measures of the runs that are done, in order, without the rest of their rows.
+  db.exec("CREATE INDEX IF NOT EXISTS runs_measures ON runs (job, floor, idx" + all + ") WHERE state = 'done'");
 }
 
 SQLite::Database open(const std::filesystem::path& path) try {
@@ -47,6 +66,7 @@ void Database::migrate() {
                                                         ", which is newer than " + std::to_string(known) +
                                                         "; use the newer talusd");
     for (int i = found; i < known; ++i) db.exec(migrations[i]);
+    add_measure_columns(db);
     if (found < known) db.exec("PRAGMA user_version = " + std::to_string(known));
   });
 }

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "support/clock.hpp"
+#include "base/clock.hpp"
+#include "study/record.hpp"
+#include "support/measures.hpp"
 
 namespace talus::service {
 
@@ -49,48 +51,13 @@ struct Job : NewJob {
   std::int64_t version = 1;           ///< counts the changes
 };
 
-/// A run of a job: a realization, or a replicate (k = 1, 2, ...) of realization 0 for the noise floor.
-struct RunKey {
-  std::int64_t job = 0;  ///< Job::number
-  bool floor = false;
-  std::int64_t index = 0;
-  bool operator==(const RunKey&) const = default;
-};
-
-/// A run handed to a worker. Only who holds the current attempt may say how it ended.
-struct Claim {
-  RunKey run;
-  std::string job_id;
-  std::int64_t seed = 0;
-  std::int64_t attempt = 1;  ///< grows with every claim
-  std::int64_t crashes = 0;  ///< attempts that ended by themselves without a result
-};
-
-inline constexpr std::array<const char*, 5> measure_names{"influence_zone_m", "front_connected_m", "front_mass_99_m",
-                                                          "front_mass_999_m", "centre_of_mass_x_m"};
-
-/// What a finished run says of itself.
-struct RunResult {
-  std::array<double, measure_names.size()> measures{};  ///< [m]
-  double mean_friction_angle_deg = 0.0;
-  std::int64_t steps = 0;
-  double wall_clock = 0.0;  ///< [s]
-  std::string digest;
-};
-
-/// Why a run failed.
-struct RunFailure {
-  std::string reason;  ///< one line
-  std::optional<int> exit_code = {}, signal = {};
-  std::string log_tail = {};
-};
-
 struct Run {
+  std::int64_t job = 0;  ///< Job::number
   RunKey key;
   RunState state = RunState::queued;
   std::int64_t attempt = 0, crashes = 0;
-  std::optional<RunResult> result = {};
-  std::optional<RunFailure> failure = {};
+  std::optional<Record> result = {};
+  std::optional<Failure> failure = {};
 };
 
 /// Which jobs to list, newest first.
@@ -107,7 +74,7 @@ struct JobFilter {
 /// Which realizations to list, by index.
 struct RunFilter {
   std::optional<RunState> state = {};
-  int measure = 0;  ///< index into measure_names
+  const Measure* measure = &measure_table[0];  ///< that the bounds are about
   std::optional<double> least = {}, below = {}, most = {};
   std::int64_t after = -1;
   int limit = 100;

@@ -12,12 +12,18 @@ inline constexpr const char* job_columns =
     "may_stop_early, case_hash, particles, steps, created, updated, started, finished, done, failed, floor_made, "
     "version";
 
-inline constexpr const char* run_columns =
-    "job, floor, idx, state, attempt, crashes, influence_zone_m, front_connected_m, front_mass_99_m, front_mass_999_m, "
-    "centre_of_mass_x_m, mean_friction_angle_deg, steps, wall_clock_s, digest, reason, exit_code, signal, log_tail";
+/// The columns of a run: its key and state, the measures in the order of their table, and how it ended.
+inline const std::string run_columns = [] {
+  std::string columns = "job, floor, idx, state, attempt, crashes, ";
+  for (const Measure& measure : measure_table) columns += measure.key + std::string(", ");
+  return columns +
+         "mean_friction_angle_deg, captured_variance, steps, wall_clock_s, digest, reason, exit_code, signal, log_tail";
+}();
 
 Job job_of(SQLite::Statement& row);
 Run run_of(SQLite::Statement& row);
+/// The kind of a run from its column `floor` (0, 1).
+RunKind kind_of(const SQLite::Column& floor);
 std::vector<Job> all_jobs(SQLite::Statement& query);
 
 /// Says that a job has changed.

@@ -72,6 +72,7 @@ CREATE TABLE remembered (
   PRIMARY KEY (subject, key)
 ) STRICT, WITHOUT ROWID;
 )sql",
+    "ALTER TABLE runs ADD COLUMN captured_variance REAL;",
 };
 
 }  // namespace talus::service

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "case/parse.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
+#include "support/json.hpp"
 
 namespace talus {
 

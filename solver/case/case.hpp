@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "monte_carlo/study_spec.hpp"
 #include "random_field/field_spec.hpp"
 #include "simulation/model.hpp"
+#include "study/spec.hpp"
 
 namespace talus {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "case/outline.hpp"
-#include "case/words.hpp"
 #include "particles/geometry.hpp"
 #include "simulation/particle_setup.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "case/case.hpp"
-#include "case/faults.hpp"
 #include "case/vertices.hpp"
+#include "support/faults.hpp"
 
 namespace talus {
 

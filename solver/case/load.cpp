@@ -6,6 +6,7 @@
 #include "case/checks.hpp"
 #include "case/overrides.hpp"
 #include "case/sections.hpp"
+#include "support/digest.hpp"
 
 namespace talus {
 namespace {
@@ -112,12 +113,7 @@ std::string case_hash(const Json& resolved) {
     for (const char* key : {"realizations", "seed", "noise_floor_replicates", "stop_when_ci_half_width_below_m",
                             "max_failed_share", "histogram_edges_m"})
       study->erase(key);
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : deciding.dump()) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  constexpr char digits[] = "0123456789abcdef";
-  std::string text(16, '0');
-  for (std::size_t k = 0; k < 16; ++k) text[15 - k] = digits[(hash >> (4 * k)) & 15U];
-  return text;
+  return hex_digits(fnv1a64(deciding.dump()));
 }
 
 }  // namespace talus

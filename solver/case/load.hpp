@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "case/case.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 

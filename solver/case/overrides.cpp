@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-#include "case/words.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "case/faults.hpp"
-#include "case/parse.hpp"
+#include "support/faults.hpp"
+#include "support/json.hpp"
 
 namespace talus {
 

@@ -5,7 +5,7 @@
 
 #include "case/outline.hpp"
 #include "case/sections.hpp"
-#include "case/words.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {

@@ -5,6 +5,7 @@
 #include "case/sections.hpp"
 #include "case/vertices.hpp"
 #include "random_field/marginals.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 constexpr Quantity length{"m", 0.0, 1e6, true};
 constexpr Quantity log_stdev_range{"", -5.0, 5.0};
 constexpr Quantity cov_range{"", 0.0, 10.0};
-constexpr double most_exact_integer = 9007199254740991.0;  // 2^53 - 1: what every reader of JSON keeps exact
 
 constexpr Names<FieldDirection> directions[] = {
     {"xy", FieldDirection::xy}, {"x", FieldDirection::x}, {"y", FieldDirection::y}};
@@ -138,7 +138,7 @@ void read_field(ObjectReader& in, FieldSpec& spec) {
 
 void read_study(ObjectReader& in, StudySpec& s) {
   in.integer("realizations", s.realizations, {"", 1.0, 1e9}, {"Realizations planned.", "[Z20] section 4 uses 1000"});
-  in.optional_integer("seed", s.seed, {"", 0.0, most_exact_integer},
+  in.optional_integer("seed", s.seed, {"", 0.0, static_cast<double>(max_exact_integer)},
                       {"Key of all random numbers; realization i depends on seed and i alone.", "user",
                        "drawn at random, and recorded"});
   in.integer("noise_floor_replicates", s.noise_floor_replicates, {"", 0.0, 1000.0},

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "case/schema.hpp"
-#include "case/words.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {

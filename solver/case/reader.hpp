@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "case/faults.hpp"
-#include "case/parse.hpp"
+#include "support/faults.hpp"
+#include "support/json.hpp"
 
 namespace talus {
 

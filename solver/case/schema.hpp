@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "case/parse.hpp"
+#include "support/json.hpp"
 
 namespace talus {
 

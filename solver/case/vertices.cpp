@@ -1,53 +1,25 @@
 #include "case/vertices.hpp"
 
-#include <charconv>
-#include <cmath>
-
-#include "case/words.hpp"
+#include "support/csv.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
 
-std::string_view trim(std::string_view s) {
-  constexpr std::string_view blanks = " \t\r\"";
-  const auto first = s.find_first_not_of(blanks);
-  return first == std::string_view::npos ? "" : s.substr(first, s.find_last_not_of(blanks) - first + 1);
-}
-
-std::optional<double> to_number(std::string_view s) {
-  if (s.starts_with('+')) s.remove_prefix(1);
-  double x = 0.0;
-  const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), x);
-  return error == std::errc{} && end == s.data() + s.size() ? std::optional(x) : std::nullopt;
-}
-
-std::vector<std::string_view> split(std::string_view line) {
-  const char separator = line.find(';') != std::string_view::npos    ? ';'
-                         : line.find('\t') != std::string_view::npos ? '\t'
-                                                                     : ',';
-  std::vector<std::string_view> fields;
-  for (std::size_t start = 0; start <= line.size();) {
-    const std::size_t end = std::min(line.find(separator, start), line.size());
-    fields.push_back(trim(line.substr(start, end - start)));
-    start = end + 1;
-  }
-  return fields;
-}
-
 /// One line of data, or nothing and a fault.
-std::optional<Vec2> read_line(const std::vector<std::string_view>& fields, const std::string& place, Faults& faults) {
+std::optional<Vec2> read_line(const std::vector<std::string>& fields, const std::string& place, Faults& faults) {
   if (fields.size() != 2) {
     faults.add(place, "has " + std::to_string(fields.size()) + " columns, expected 2: x, y in metres");
     return {};
   }
   std::optional<double> xy[2];
   for (int k = 0; k < 2; ++k) {
-    const std::string_view field = fields[static_cast<std::size_t>(k)];
+    const std::string& field = fields[static_cast<std::size_t>(k)];
     xy[k] = to_number(field);
-    const bool decimal_comma = field.find(',') != std::string_view::npos;
+    const bool decimal_comma = field.find(',') != std::string::npos;
     if (!xy[k])
       faults.add(place, in_quotes(field) + " is not a number" + (decimal_comma ? "; write a decimal point" : ""));
-    else if (!std::isfinite(*xy[k]) || !coordinate.allows(*xy[k]))
+    else if (!coordinate.allows(*xy[k]))
       faults.add(place, shorten(field) + " is out of range; " + coordinate.describe());
     else
       continue;
@@ -119,22 +91,13 @@ std::string Vertices::place(std::size_t k) const {
 
 Vertices read_csv(std::string_view text, const std::string& name, Faults& faults) {
   Vertices out{{}, name};
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  bool header_allowed = true;
-  int number = 0;
-  for (std::size_t start = 0; start < text.size() && out.points.size() <= most_vertices;) {
-    const std::size_t end = std::min(text.find('\n', start), text.size());
-    const std::string_view line = trim(text.substr(start, end - start));
-    start = end + 1;
-    ++number;
-    if (line.empty() || line.starts_with('#')) continue;
-    const auto fields = split(line);
-    const bool header = header_allowed && fields.size() == 2 && !to_number(fields[0]) && !to_number(fields[1]);
-    header_allowed = false;
-    if (header) continue;
-    if (const auto point = read_line(fields, name + ":" + std::to_string(number), faults)) {
+  CsvRows rows(text, CsvStyle::by_hand);
+  for (bool first = true; rows.next() && out.points.size() <= most_vertices; first = false) {
+    const std::vector<std::string>& fields = rows.fields();
+    if (first && fields.size() == 2 && !to_number(fields[0]) && !to_number(fields[1])) continue;  // the header
+    if (const auto point = read_line(fields, name + ":" + std::to_string(rows.line()), faults)) {
       out.points.push_back(*point);
-      out.lines.push_back(number);
+      out.lines.push_back(rows.line());
     }
   }
   if (out.points.size() > most_vertices)
@@ -162,6 +125,8 @@ Vertices read_vertices(ObjectReader& in, std::string_view key, Size count, const
                                     std::to_string(count.least) + " are needed");
   return in.faults().size() == before ? out : Vertices{};
 }
+
+std::string to_text(Vec2 p) { return "(" + to_text(p.x) + ", " + to_text(p.y) + ")"; }
 
 Json to_json(const std::vector<Vec2>& points) {
   Json list = Json::array();

@@ -36,6 +36,9 @@ Vertices read_vertices(ObjectReader& in, std::string_view key, Size count, const
 /// Two columns x, y [m]; separator comma, semicolon or tab; one header line, blank lines and # comments are skipped.
 Vertices read_csv(std::string_view text, const std::string& name, Faults& faults);
 
+/// "(3, 4.5)"
+std::string to_text(Vec2 p);
+
 /// [[x, y], ...] as JSON
 Json to_json(const std::vector<Vec2>& points);
 

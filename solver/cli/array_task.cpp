@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
 
 namespace talus::cli {
 

@@ -7,7 +7,6 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "case/load.hpp"
 #include "cli/help.hpp"
@@ -19,6 +18,7 @@
 #include "math/angle.hpp"
 #include "monte_carlo/realization.hpp"
 #include "random_field/random_field.hpp"
+#include "support/seed.hpp"
 
 namespace talus::cli {
 namespace {
@@ -69,8 +69,7 @@ void use_xi(Case& problem, const fs::path& file) {
 std::uint64_t choose_seed(const FieldOptions& options, const Case& problem) {
   if (options.seed) return *options.seed;
   if (problem.study.seed) return *problem.study.seed;
-  std::random_device entropy;
-  return ((std::uint64_t{entropy()} << 32) | entropy()) & ((1ull << 53) - 1);
+  return random_seed();
 }
 
 ordered_json summary(const FieldOnParticles& field, const Strength& strength, const RunIdentity& identity) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "case/words.hpp"
+#include "support/text.hpp"
 
 namespace talus::cli {
 namespace {

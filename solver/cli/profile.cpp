@@ -10,10 +10,10 @@
 #include "case/load.hpp"
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
-#include "io/files.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
 #include "math/angle.hpp"
+#include "support/files.hpp"
 
 namespace talus::cli {
 namespace {

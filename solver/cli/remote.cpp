@@ -13,8 +13,9 @@
 #include "cli/server.hpp"
 #include "cli/signals.hpp"
 #include "cli/verbs.hpp"
-#include "io/files.hpp"
 #include "study/progress.hpp"
+#include "support/files.hpp"
+#include "support/text.hpp"
 
 namespace talus::cli {
 namespace {
@@ -49,7 +50,7 @@ Progress progress_of(const ordered_json& info, double elapsed) {
   p.done = runs.at("done");
   p.failed = runs.at("failed");
   p.made_now = p.done + p.failed;
-  p.waits = info.value("waits", "");
+  p.pending_reason = info.value("waits", "");
   return p;
 }
 
@@ -164,7 +165,7 @@ void add_remote(CLI::App& app, Action& action) {
   verb->add_option("--realizations", options->realizations, "Number of realizations; default: the case's")
       ->check(CLI::Range(1, 1'000'000'000));
   verb->add_option("--seed", options->seed, "Seed of the random fields; default: the case's, else the server's choice")
-      ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));
+      ->check(CLI::Range(std::int64_t{0}, max_exact_integer));
   add_overrides(*verb, options->overrides);
   verb->add_flag("--watch", options->watch, "Wait until the job has ended");
   set_footer(*verb, {exit_text::bad_case, exit_text::io, exit_text::dismissed, exit_text::failed},

@@ -16,6 +16,8 @@
 #include "figures/figures.hpp"
 #include "math/angle.hpp"
 #include "run/run_realization.hpp"
+#include "support/files.hpp"
+#include "support/text.hpp"
 
 namespace talus::cli {
 namespace {
@@ -142,7 +144,7 @@ void add_run(CLI::App& app, Action& action) {
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--seed", options->seed,
                    "Seed of the random field; default: the case's, else a random one, which is recorded")
-      ->check(CLI::Range(std::uint64_t{0}, (std::uint64_t{1} << 53) - 1));  // what every reader of JSON keeps exact
+      ->check(CLI::Range(std::int64_t{0}, max_exact_integer));  // what every reader of JSON keeps exact
   verb->add_option(
           "--threads", options->threads,
           "OpenMP threads; by default one for every 2000 particles, fewer on a busy machine; the result does not "

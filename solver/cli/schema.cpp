@@ -5,10 +5,10 @@
 #include <iostream>
 #include <memory>
 
-#include "case/words.hpp"
 #include "cli/help.hpp"
 #include "cli/schemas.hpp"
 #include "cli/verbs.hpp"
+#include "support/text.hpp"
 
 namespace talus::cli {
 namespace {

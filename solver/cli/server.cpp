@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <random>
 
-#include "io/files.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
+#include "support/files.hpp"
 
 namespace talus::cli {
 namespace {

@@ -7,12 +7,11 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
-#include "io/files.hpp"
-#include "monte_carlo/histogram.hpp"
-#include "study/ledger.hpp"
+#include "study/directory_store.hpp"
 #include "study/progress.hpp"
 #include "study/publish.hpp"
 #include "study/summary.hpp"
+#include "support/files.hpp"
 
 namespace talus::cli {
 namespace {
@@ -30,43 +29,31 @@ struct StatsOptions {
   bool from_runs = false, json = false;
 };
 
-/// The books of a study whose realizations others have run: from the results in its runs/ and floor/.
+/// The records of a study whose realizations others have run: from the results in its runs/ and floor/.
 Tables tables_from_runs(const fs::path& directory) {
   std::optional<Plan> plan = find_plan(directory);
   if (!plan) throw IoError(directory.string() + " does not hold a study: there is no plan.json");
-  const Ledger ledger(StudyPaths{directory}, *plan);
-  return {.plan = std::move(*plan), .runs = ledger.runs(), .floor = ledger.floor()};
+  const StudyPaths paths{directory};
+  const StudyIdentity identity{.seed = plan->seed, .case_hash = plan->case_hash};
+  return {.plan = std::move(*plan),
+          .runs = read_records(paths, RunKind::realization, identity),
+          .floor = read_records(paths, RunKind::replicate, identity)};
 }
 
 /// How one quantity is distributed, in the bins asked for.
-nlohmann::ordered_json distribution(const nlohmann::ordered_json& study, const Tables& tables,
-                                    const StatsOptions& options) {
-  const auto column = std::find_if(measure_columns.begin(), measure_columns.end(),
-                                   [&](const MeasureColumn& c) { return c.key == options.quantity; });
-  std::vector<double> sample;
-  for (const Record& r : tables.runs)
-    if (r.done) sample.push_back(r.measures.*column->member);
-  std::sort(sample.begin(), sample.end());
-
-  const nlohmann::ordered_json& quantity = study.at("quantities").at(options.quantity);
-  const nlohmann::ordered_json& realizations = study.at("realizations");
-  nlohmann::ordered_json out = {{"quantity", options.quantity}};
-  for (const char* key : {"planned", "done", "failed", "complete"}) out[key] = realizations.at(key);
-  for (const char* key :
-       {"n", "mean", "mean_ci95", "stdev", "min", "max", "noise_floor_stdev", "stdev_over_noise_floor"})
-    out[key] = quantity.at(key);
-  out["histogram"] = quantity.at("histogram");
-  if (options.bins == 0 && options.edges.empty()) return out;
-  const std::vector<double> edges =
-      options.edges.empty() ? equal_edges(sample, static_cast<std::size_t>(options.bins)) : options.edges;
-  const Histogram h = edges.empty() ? Histogram{} : histogram(sample, edges);
-  out["histogram"] = {{"edges", h.edges},
-                      {"counts", h.counts},
-                      {"underflow", h.underflow},
-                      {"overflow", h.overflow},
-                      {"convention", histogram_convention},
-                      {"edges_given", !options.edges.empty()}};
-  return out;
+Json distribution(const Json& study, const Tables& tables, const StatsOptions& options) {
+  const Measure& measure = *find_measure(options.quantity);
+  MeasureSample sample{.failed = study.at("realizations").at("failed"),
+                       .complete = study.at("realizations").at("complete")};
+  const auto add = [&](std::vector<double>& values, const Record& r) {
+    if (r.done) values.push_back(r.measures.*measure.member);
+  };
+  for (const Record& r : tables.runs) add(sample.values, r);
+  if (!tables.floor.empty() && !tables.runs.empty() && tables.runs.front().index == 0)
+    add(sample.noise, tables.runs.front());
+  for (const Record& r : tables.floor) add(sample.noise, r);
+  return talus::distribution(tables.plan, measure, sample,
+                             {.count = static_cast<std::size_t>(options.bins), .edges = options.edges});
 }
 
 /// What cannot be asked for together; empty if all is well.
@@ -108,7 +95,7 @@ Exit stats(const StatsOptions& options) {
   }
   Tables tables = options.from_runs ? tables_from_runs(options.directories.front()) : merge(options.directories);
   tables.runs = counted(tables.plan, tables.runs);
-  const nlohmann::ordered_json study = summarize(tables.plan, tables.runs, tables.floor);
+  const Json study = summarize(tables.plan, tables.runs, tables.floor);
   if (!options.quantity.empty()) {  // a question only: nothing is written
     std::cout << distribution(study, tables, options).dump(2) << "\n";
     return Exit::ok;
@@ -125,7 +112,7 @@ Exit stats(const StatsOptions& options) {
 
 std::vector<std::string> quantity_names() {
   std::vector<std::string> names;
-  for (const MeasureColumn& column : measure_columns) names.emplace_back(column.key);
+  for (const Measure& measure : measure_table) names.emplace_back(measure.key);
   return names;
 }
 

@@ -12,6 +12,7 @@
 #include "particles/geometry.hpp"
 #include "random_field/random_field.hpp"
 #include "simulation/simulation.hpp"
+#include "support/run_memory.hpp"
 
 namespace talus::cli {
 namespace {
@@ -34,10 +35,6 @@ struct Demand {
   std::size_t field_terms = 0;
 };
 
-constexpr double bytes_per_soil = 500.0;  ///< arrays, copies of the step, cell lists, frame; measured: 503
-constexpr double bytes_per_wall = 350.0;
-constexpr double bytes_at_least = 18e6;  ///< program and libraries
-
 Demand measure(const Case& c) {
   Demand d;
   const ParticlePlan plan = plan_particles(c.model);
@@ -45,8 +42,7 @@ Demand measure(const Case& c) {
   d.wall = plan.walls.size();
   d.step = first_step(c.model);
   d.steps = std::ceil(c.model.time.end / d.step * (1.0 - 1e-12));
-  d.memory =
-      bytes_at_least + bytes_per_soil * static_cast<double>(d.soil) + bytes_per_wall * static_cast<double>(d.wall);
+  d.memory = run_memory(static_cast<double>(d.soil + d.wall));
   if (c.field) {
     const RandomField field(*c.field, bounding_box(c.model.slide), c.model.dx);
     d.captured_variance = field.captured_variance();

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-#include "math/error.hpp"
+#include "support/error.hpp"
 
 namespace talus::cli {
 

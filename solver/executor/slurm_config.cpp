@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
+
+#include "support/files.hpp"
+#include "support/json.hpp"
 
 namespace talus::executor {
 namespace {
-
-using Json = nlohmann::json;
 
 /// What we say to sbatch ourselves.
 constexpr std::array ours{
@@ -85,8 +83,12 @@ class Reader {
 }  // namespace
 
 SlurmConfig parse_slurm_config(const std::string& text, const std::string& place) {
-  const Json document = Json::parse(text, nullptr, false);
-  if (document.is_discarded()) throw SlurmConfigError(place + " is not JSON");
+  Json document;
+  try {
+    document = parse_json(text, place);
+  } catch (const ConfigError& e) {
+    throw SlurmConfigError(e.what());
+  }
   SlurmConfig config;
   Reader reader(document, place);
   reader.text("partition", config.partition);
@@ -103,9 +105,11 @@ SlurmConfig parse_slurm_config(const std::string& text, const std::string& place
 }
 
 SlurmConfig read_slurm_config(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw SlurmConfigError("cannot read " + file.string());
-  return parse_slurm_config({std::istreambuf_iterator<char>(in), {}}, file.string());
+  try {
+    return parse_slurm_config(read_file(file, JsonLimits{}.bytes), file.string());
+  } catch (const IoError& e) {
+    throw SlurmConfigError(e.what());
+  }
 }
 
 }  // namespace talus::executor

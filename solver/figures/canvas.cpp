@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "figures/gnuplot.hpp"
-#include "io/files.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
+#include "support/files.hpp"
 
 namespace talus::figures {
 namespace {

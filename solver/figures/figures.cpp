@@ -12,7 +12,7 @@
 #include "figures/profile.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

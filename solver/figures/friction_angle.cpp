@@ -2,7 +2,7 @@
 #include <array>
 
 #include "figures/charts.hpp"
-#include "monte_carlo/statistics.hpp"
+#include "statistics/sample.hpp"
 
 namespace talus::figures {
 namespace {

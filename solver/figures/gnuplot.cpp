@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "math/error.hpp"
+#include "support/error.hpp"
 
 extern char** environ;
 

@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "figures/charts.hpp"
-#include "monte_carlo/statistics.hpp"
+#include "statistics/sample.hpp"
 
 namespace talus::figures {
 namespace {

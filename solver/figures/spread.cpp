@@ -3,17 +3,14 @@
 #include <limits>
 
 #include "figures/charts.hpp"
+#include "support/measures.hpp"
 
 namespace talus::figures {
 namespace {
 
 constexpr Canvas spread_canvas{900, 520};
 constexpr Panel spread_panel{190, 812, 84, 440};
-constexpr std::array<std::pair<const char*, const char*>, 5> measures{{{"influence_zone_m", "farthest particle"},
-                                                                       {"front_connected_m", "connected body"},
-                                                                       {"front_mass_999_m", "99.9 % of the mass"},
-                                                                       {"front_mass_99_m", "99 % of the mass"},
-                                                                       {"centre_of_mass_x_m", "centre of mass"}}};
+constexpr double rows = static_cast<double>(measure_table.size());
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
 // Length and interval of a bar at height `row`.
@@ -41,11 +38,12 @@ Sheet spread_sheet(const StudyFiles& study) {
   std::vector<Row> spread;
   std::vector<Row> floor;
   double widest = 0.0;
-  for (std::size_t i = 0; i < measures.size(); ++i) {
-    const double row = static_cast<double>(measures.size() - i);
-    text(script, spread_canvas, spread_panel.left - 10, spread_panel.bottom - (row - 0.4) / 5.2 * spread_panel.height(),
-         measures[i].second, Align::right);
-    const auto found = study.quantities.find(measures[i].first);
+  double row = rows + 1.0;
+  for (const Measure& measure : measure_table) {
+    row -= 1.0;
+    const double y = spread_panel.bottom - (row - 0.4) / (rows + 0.2) * spread_panel.height();
+    text(script, spread_canvas, spread_panel.left - 10, y, measure.label, Align::right);
+    const auto found = study.quantities.find(measure.key);
     if (found == study.quantities.end()) continue;
     const Quantity& q = found->second;
     spread.push_back(spread_row(q, row + 0.16));
@@ -54,13 +52,12 @@ Sheet spread_sheet(const StudyFiles& study) {
     widest = std::max(widest, reach == reach ? reach : q.stdev.value_or(0.0));
     const std::string values = fixed(q.stdev.value_or(0.0), 3) + " / " +
                                (q.noise_floor_stdev ? fixed(*q.noise_floor_stdev, 3) : std::string("–"));
-    text(script, spread_canvas, spread_canvas.width - 24,
-         spread_panel.bottom - (row - 0.4) / 5.2 * spread_panel.height(), values, Align::right, 9, false, faint);
+    text(script, spread_canvas, spread_canvas.width - 24, y, values, Align::right, 9, false, faint);
   }
   if (widest <= 0.0) widest = 1.0;
   script.data("spread", spread).data("floor", floor);
   script("set xrange [0:", 1.04 * widest, "]");
-  script("set yrange [0.4:5.6]");
+  script("set yrange [0.4:", rows + 0.6, "]");
   script("set xtics ", nice_step(widest, 6));
   script("unset ytics");
   script("set border 1");

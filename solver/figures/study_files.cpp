@@ -1,17 +1,18 @@
 #include "figures/study_files.hpp"
 
-#include <charconv>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 
-#include "io/files.hpp"
-#include "math/error.hpp"
+#include "support/csv.hpp"
+#include "support/error.hpp"
+#include "support/files.hpp"
+#include "support/json.hpp"
+#include "support/text.hpp"
 
 namespace talus::figures {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using json = Json;
 
 constexpr std::size_t max_json_bytes = std::size_t{256} << 20;
 constexpr std::size_t max_csv_bytes = std::size_t{1} << 30;
@@ -75,59 +76,27 @@ StudyFiles read_summary(const json& study) {
   return files;
 }
 
-std::vector<std::string> fields_of(std::string_view line) {
-  std::vector<std::string> fields(1);
-  bool inside_quotes = false;
-  for (const char c : line) {
-    if (c == '"') {
-      inside_quotes = !inside_quotes;
-    } else if (c == ',' && !inside_quotes) {
-      fields.emplace_back();
-    } else if (c != '\r') {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
 double to_number(const std::map<std::string, std::string>& row, const char* column) {
   const auto cell = row.find(column);
   if (cell == row.end()) throw IoError(std::string("has no column ") + column);
-  double value = 0.0;
-  const std::string& text = cell->second;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw IoError("column " + std::string(column) + ": \"" + text + "\" is not a number");
-  return value;
+  const std::optional<double> value = talus::to_number(cell->second);
+  if (!value) throw IoError("column " + std::string(column) + ": " + in_quotes(cell->second) + " is not a number");
+  return *value;
 }
 
 }  // namespace
 
-json read_json(const fs::path& path) {
-  try {
-    return json::parse(read_file(path, max_json_bytes));
-  } catch (const json::exception& e) {
-    throw IoError(path.string() + " is not JSON: " + e.what());
-  }
-}
-
 std::vector<std::map<std::string, std::string>> read_table(const fs::path& path) {
   const std::string text = read_file(path, max_csv_bytes);
-  std::vector<std::string> header;
   std::vector<std::map<std::string, std::string>> rows;
-  int line = 0;
-  for (std::size_t at = 0; at < text.size(); ++line) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::vector<std::string> fields = fields_of(std::string_view(text).substr(at, end - at));
-    at = end + 1;
-    if (line == 0) {
-      header = fields;
-      continue;
-    }
-    if (fields.size() != header.size()) {
-      throw IoError(path.string() + ":" + std::to_string(line + 1) + ": " + std::to_string(fields.size()) +
+  CsvRows lines(text);
+  if (!lines.next()) return rows;
+  const std::vector<std::string> header = lines.fields();
+  while (lines.next()) {
+    const std::vector<std::string>& fields = lines.fields();
+    if (fields.size() != header.size())
+      throw IoError(path.string() + ":" + std::to_string(lines.line()) + ": " + std::to_string(fields.size()) +
                     " fields instead of " + std::to_string(header.size()));
-    }
     auto& row = rows.emplace_back();
     for (std::size_t i = 0; i < header.size(); ++i) row[header[i]] = fields[i];
   }
@@ -139,8 +108,8 @@ StudyFiles read_study(const fs::path& directory) {
   const fs::path table = directory / "realizations.csv";
   StudyFiles files;
   try {
-    files = read_summary(read_json(summary));
-  } catch (const json::exception& e) {
+    files = read_summary(read_json(summary, max_json_bytes));
+  } catch (const Json::exception& e) {
     throw IoError(summary.string() + " is not a valid study summary: " + e.what());
   }
   for (const auto& row : read_table(table)) {

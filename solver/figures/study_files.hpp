@@ -4,13 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "monte_carlo/histogram.hpp"
-#include "monte_carlo/statistics.hpp"
+#include "statistics/histogram.hpp"
+#include "statistics/sample.hpp"
 
 namespace talus::figures {
 
@@ -47,9 +46,6 @@ struct StudyFiles {
 /// Reads DIR/study.json and DIR/realizations.csv.
 /// @throws IoError naming the file and what it lacks
 StudyFiles read_study(const std::filesystem::path& directory);
-
-/// The document at `path`. @throws IoError
-nlohmann::json read_json(const std::filesystem::path& path);
 
 /// Rows of a CSV file as text by column name; fields may be quoted.
 /// @throws IoError naming file and line of a row whose fields do not match the header

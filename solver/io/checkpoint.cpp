@@ -7,10 +7,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "io/checksum.hpp"
-#include "io/files.hpp"
 #include "io/hdf5.hpp"
-#include "math/error.hpp"
+#include "support/digest.hpp"
+#include "support/error.hpp"
+#include "support/files.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
@@ -90,11 +91,7 @@ CheckpointHeader read_header(hid_t file) {
 std::string text(const std::string& value) { return value; }
 std::string text(std::uint64_t value) { return std::to_string(value); }
 std::string text(const std::optional<std::int64_t>& value) { return value ? std::to_string(*value) : "none"; }
-std::string text(const std::optional<double>& value) {
-  if (!value) return "none";
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, *value).ptr};
-}
+std::string text(const std::optional<double>& value) { return value ? to_text(*value) : "none"; }
 
 /// "; seed 7, wanted 8" for each part that differs.
 std::string differences(const CheckpointHeader& found, const CheckpointHeader& expected) {

@@ -3,7 +3,7 @@
 
 #include "io/hdf5.hpp"
 #include "io/hdf5_detail.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
 
 namespace talus::hdf5 {
 namespace {

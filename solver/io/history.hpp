@@ -10,9 +10,6 @@
 
 namespace talus {
 
-/// The shortest decimal number that reads back as the same double; the locale plays no part.
-std::string format_number(double value);
-
 /// Writes all rows atomically: columns time_s, step, front_m, centre_of_mass_x_m, kinetic_energy_J_per_m,
 /// max_speed_m_s.
 /// @throws IoError naming the path; an older file is then untouched

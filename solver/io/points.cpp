@@ -2,10 +2,11 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "io/files.hpp"
 #include "io/history.hpp"
 #include "io/vtkhdf.hpp"
 #include "io/vtkhdf_layout.hpp"
+#include "support/files.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
@@ -41,8 +42,8 @@ void write_field_csv(const std::filesystem::path& path, std::span<const Vec2> po
   for (const NamedArray& a : arrays) text += "," + a.name;
   text += "\n";
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    text += format_number(positions[i].x) + "," + format_number(positions[i].y);
-    for (const NamedArray& a : arrays) text += "," + format_number(a.values[i]);
+    text += to_text(positions[i].x) + "," + to_text(positions[i].y);
+    for (const NamedArray& a : arrays) text += "," + to_text(a.values[i]);
     text += "\n";
   }
   write_file_atomically(path, text);

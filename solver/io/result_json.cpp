@@ -5,16 +5,16 @@
 #include <limits>
 #include <stdexcept>
 
-#include "io/files.hpp"
 #include "math/angle.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
+#include "support/files.hpp"
+#include "support/json.hpp"
 
 namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
-using nlohmann::ordered_json;
+using ordered_json = Json;
 
 constexpr const char* ending_names[] = {"end_time", "at_rest", "interrupted"};
 
@@ -33,7 +33,7 @@ ordered_json or_null(const std::optional<T>& value) {
 /// One object of the document, read key by key.
 class Reader {
  public:
-  Reader(const json& node, std::string file, std::string pointer)
+  Reader(const Json& node, std::string file, std::string pointer)
       : node_(node), file_(std::move(file)), pointer_(std::move(pointer)) {
     if (!node_.is_object())
       throw IoError(file_ + ": " + (pointer_.empty() ? "the document" : pointer_) + " is not an object");
@@ -41,13 +41,13 @@ class Reader {
 
   Reader object(const char* key) const { return {value(key), file_, pointer_ + "/" + key}; }
   double number(const char* key, double least = -std::numeric_limits<double>::infinity()) const {
-    const json& v = value(key);
+    const Json& v = value(key);
     if (!v.is_number() || v.get<double>() < least) fail(key, "a number", least);
     return v.get<double>();
   }
   template <class T = std::int64_t>
   T integer(const char* key, T least = 0) const {
-    const json& v = value(key);
+    const Json& v = value(key);
     if (!v.is_number_integer()) fail(key, "an integer", static_cast<double>(least));
     // A number that JSON gives as unsigned may be too large for the signed type.
     const bool fits =
@@ -85,7 +85,7 @@ class Reader {
   }
 
  private:
-  const json& value(const char* key) const {
+  const Json& value(const char* key) const {
     const auto found = node_.find(key);
     if (found == node_.end()) throw IoError(file_ + ": " + pointer_ + "/" + key + " is missing");
     return *found;
@@ -94,10 +94,10 @@ class Reader {
                          double least = -std::numeric_limits<double>::infinity()) const {
     const std::string range = std::isfinite(least) ? " >= " + std::to_string(static_cast<long long>(least)) : "";
     throw IoError(file_ + ": " + pointer_ + "/" + key + " = " +
-                  value(key).dump(-1, ' ', true, json::error_handler_t::replace) + " is not " + wanted + range);
+                  value(key).dump(-1, ' ', true, Json::error_handler_t::replace) + " is not " + wanted + range);
   }
 
-  const json& node_;
+  const Json& node_;
   std::string file_;
   std::string pointer_;
 };
@@ -105,11 +105,9 @@ class Reader {
 RunResult read_run(const Reader& root) {
   const Reader particles = root.object("particles");
   const Reader field = root.object("field");
-  return {.measures = {.influence_zone = root.number("influence_zone_m"),
-                       .front_connected = root.number("front_connected_m"),
-                       .front_mass_99 = root.number("front_mass_99_m"),
-                       .front_mass_999 = root.number("front_mass_999_m"),
-                       .centre_of_mass_x = root.number("centre_of_mass_x_m")},
+  Measures measures;
+  for (const Measure& measure : measure_table) measures.*measure.member = root.number(measure.key);
+  return {.measures = measures,
           .ending = root.ending("ending"),
           .soil = particles.integer("soil"),
           .wall = particles.integer("wall"),
@@ -145,13 +143,9 @@ Provenance read_provenance(const Reader& node) {
 }  // namespace
 
 ordered_json result_json(const RunResult& result, const Provenance& provenance) {
-  const Measures& m = result.measures;
-  ordered_json document = {
-      {"influence_zone_m", m.influence_zone},
-      {"front_connected_m", m.front_connected},
-      {"front_mass_99_m", m.front_mass_99},
-      {"front_mass_999_m", m.front_mass_999},
-      {"centre_of_mass_x_m", m.centre_of_mass_x},
+  ordered_json document;
+  for (const Measure& measure : measure_table) document[measure.key] = result.measures.*measure.member;
+  document.update({
       {"particles", {{"soil", result.soil}, {"wall", result.wall}}},
       {"steps", result.steps},
       {"time_s", result.time},
@@ -180,19 +174,14 @@ ordered_json result_json(const RunResult& result, const Provenance& provenance) 
         {"case_title", provenance.case_title},
         {"compiler", provenance.compiler},
         {"started_utc", provenance.started_utc}}},
-  };
+  });
   refuse_not_finite(document, "");
   return document;
 }
 
 std::pair<RunResult, Provenance> read_result(const fs::path& path) {
   constexpr std::size_t max_bytes = std::size_t{1} << 20;
-  json document;
-  try {
-    document = json::parse(read_file(path, max_bytes));
-  } catch (const json::exception& e) {
-    throw IoError(path.string() + " is not JSON: " + e.what());
-  }
+  const Json document = read_json(path, max_bytes);
   const Reader root(document, path.string(), "");
   return {read_run(root), read_provenance(root.object("provenance"))};
 }

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "io/files.hpp"
 #include "io/vtkhdf_layout.hpp"
 #include "io/xdmf.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
+#include "support/files.hpp"
 
 namespace talus {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "io/vtkhdf.hpp"
 #include "io/vtkhdf_layout.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

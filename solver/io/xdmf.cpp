@@ -2,6 +2,7 @@
 
 #include "io/history.hpp"
 #include "io/vtkhdf_layout.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
@@ -63,9 +64,9 @@ std::string xdmf_document(const std::string& file_name, std::size_t n, std::span
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid Name=\"snapshots\" GridType=\"Collection\" "
       "CollectionType=\"Temporal\">\n";
   for (std::size_t k = 0; k < times.size(); ++k) {
-    text += "<Grid Name=\"step" + std::to_string(k) + "\" GridType=\"Uniform\"><Time Value=\"" +
-            format_number(times[k]) + "\"/><Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" +
-            std::to_string(n) + "\" NodesPerElement=\"1\"/>\n" + "<Geometry GeometryType=\"XYZ\">" +
+    text += "<Grid Name=\"step" + std::to_string(k) + "\" GridType=\"Uniform\"><Time Value=\"" + to_text(times[k]) +
+            "\"/><Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + std::to_string(n) +
+            "\" NodesPerElement=\"1\"/>\n" + "<Geometry GeometryType=\"XYZ\">" +
             item(file, {"/VTKHDF/Points", "Float", rows, 3, k * n, n, 0, 3}) + "</Geometry>\n";
     for (const vtkhdf::Field& f : vtkhdf::fields)
       if (f.components <= 3)

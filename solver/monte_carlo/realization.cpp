@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "math/error.hpp"
 #include "random_field/random_field.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

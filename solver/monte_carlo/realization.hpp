@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "monte_carlo/study_spec.hpp"
 #include "random_field/field_spec.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/run_result.hpp"
+#include "study/spec.hpp"
 
 namespace talus {
 

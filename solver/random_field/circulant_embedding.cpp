@@ -6,7 +6,7 @@
 #include <sstream>
 #include <unsupported/Eigen/FFT>
 
-#include "math/error.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

@@ -8,10 +8,10 @@
 #include <utility>
 #include <variant>
 
-#include "math/error.hpp"
 #include "random_field/circulant_embedding.hpp"
 #include "random_field/karhunen_loeve.hpp"
 #include "random_field/stream.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

@@ -4,7 +4,7 @@
 #include <queue>
 #include <sstream>
 
-#include "math/error.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

@@ -5,14 +5,15 @@
 #include <chrono>
 #include <ctime>
 #include <nlohmann/json.hpp>
-#include <random>
 
 #include "io/checkpoint.hpp"
-#include "io/files.hpp"
 #include "io/result_json.hpp"
-#include "math/error.hpp"
 #include "run/recorder.hpp"
 #include "run/thread_choice.hpp"
+#include "support/error.hpp"
+#include "support/files.hpp"
+#include "support/output_directory.hpp"
+#include "support/seed.hpp"
 
 namespace talus {
 namespace {
@@ -67,8 +68,7 @@ std::uint64_t choose_seed(std::optional<std::uint64_t> given, const LoadedCase& 
       return document[seed];
   }
   if (loaded.value.study.seed) return *loaded.value.study.seed;
-  std::random_device entropy;
-  return ((std::uint64_t{entropy()} << 32) | entropy()) & ((1ull << 53) - 1);
+  return random_seed();
 }
 
 RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const RunHooks& hooks) {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "math/error.hpp"
 #include "simulation/simulation.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/vec2.hpp"
+#include "support/measures.hpp"
 
 namespace talus {
 

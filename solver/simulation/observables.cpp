@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "neighbours/cell_list.hpp"
+#include "support/digest.hpp"
 
 namespace talus {
 namespace {
@@ -104,18 +105,13 @@ Measures measure_fronts(const Soil& soil, double left, double dx) {
 }
 
 std::string digest(const Soil& soil) {
-  std::uint64_t hash = 14695981039346656037ull;
-  const auto update = [&](double value) {
-    auto bits = std::bit_cast<std::uint64_t>(value);
-    for (int byte = 0; byte < 8; ++byte, bits >>= 8) hash = (hash ^ (bits & 0xff)) * 1099511628211ull;
-  };
+  std::uint64_t hash = fnv1a64_start;
   for (const auto i : by_id(soil))
     for (const double value :
          {soil.x[i], soil.y[i], soil.vx[i], soil.vy[i], soil.rho[i], soil.txx[i], soil.tyy[i], soil.txy[i]})
-      update(value);
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
+      // Little-endian bytes, which is the order in memory of every machine that Talus runs on.
+      hash = fnv1a64({reinterpret_cast<const char*>(&value), sizeof value}, hash);
+  return hex_digits(hash);
 }
 
 }  // namespace talus

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "math/error.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 

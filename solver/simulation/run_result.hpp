@@ -4,16 +4,9 @@
 #include <cstdint>
 #include <string>
 
-namespace talus {
+#include "support/measures.hpp"
 
-/// Where the slide ended; every x is measured from the left boundary. [m]
-struct Measures {
-  double influence_zone = 0.0;    ///< farthest soil particle, the paper's measure
-  double front_connected = 0.0;   ///< farthest particle of the largest body linked by gaps of at most 1.5 dx
-  double front_mass_99 = 0.0;     ///< beyond it lies 1 % of the mass
-  double front_mass_999 = 0.0;    ///< beyond it lies 0.1 % of the mass
-  double centre_of_mass_x = 0.0;  ///< mean x of the mass
-};
+namespace talus {
 
 /// The random field of a run in three numbers.
 struct FieldSummary {

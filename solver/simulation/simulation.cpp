@@ -7,8 +7,8 @@
 #include <string>
 
 #include "integrate/schemes.hpp"
-#include "math/error.hpp"
 #include "simulation/observables.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

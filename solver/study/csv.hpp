@@ -10,6 +10,11 @@
 
 namespace talus {
 
+/// The first line of a table; `index_name` heads the first column ("index", "replicate").
+std::string csv_header(const std::string& index_name);
+/// The line of a record.
+std::string csv_line(const Record& record);
+
 /// The table of `records`; `index_name` heads the first column ("index", "replicate").
 std::string to_csv(const std::vector<Record>& records, const std::string& index_name);
 

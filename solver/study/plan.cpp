@@ -1,9 +1,9 @@
 #include "study/plan.hpp"
 
-#include <chrono>
 #include <cstdint>
 
-#include "io/files.hpp"
+#include "support/files.hpp"
+#include "support/json.hpp"
 
 namespace talus {
 namespace {
@@ -50,34 +50,12 @@ Plan from_json(const ordered_json& json) {
 
 }  // namespace
 
-Plan make_plan(const LoadedCase& loaded, std::uint64_t seed, const std::string& version) {
-  const Case& c = loaded.value;
-  if (c.study.realizations > 1) {
-    const char* same = "every realization would be the same: ";
-    if (!c.field) throw ConfigError("/random_field", std::string(same) + "a study needs a random field");
-    if (c.field->sigma == 0.0)
-      throw ConfigError("/random_field", std::string(same) + "the standard deviation of the field is 0");
-    if (!c.field->xi.empty())
-      throw ConfigError("/random_field/xi", std::string(same) + "the coefficients are given; remove them to draw");
-  }
-  if (c.study.sampling == Sampling::latin_hypercube && c.study.stop_half_width)
-    throw ConfigError(
-        "/study/stop_when_ci_half_width_below_m",
-        "a Latin hypercube is one sample of a fixed size and cannot stop early; use monte_carlo or remove this");
-  return {.title = c.title, .case_hash = loaded.hash, .version = version, .seed = seed, .study = c.study};
-}
-
-std::uint64_t seed_from_clock() {
-  const auto ticks = std::chrono::system_clock::now().time_since_epoch().count();
-  return static_cast<std::uint64_t>(ticks) & ((std::uint64_t{1} << 53) - 1);
-}
-
 std::optional<Plan> find_plan(const fs::path& directory) {
   const fs::path path = directory / plan_name;
   std::error_code error;
   if (!fs::exists(path, error)) return std::nullopt;
   try {
-    return from_json(ordered_json::parse(read_file(path, std::size_t{1} << 24)));
+    return from_json(read_json(path, std::size_t{1} << 24));
   } catch (const nlohmann::json::exception& e) {
     throw IoError(path.string() + " is not a plan of Talus (" + e.what() + ")");
   }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "io/files.hpp"
 #include "study/csv.hpp"
-#include "study/stop_rule.hpp"
+#include "study/estimator.hpp"
 #include "study/summary.hpp"
+#include "support/atomic_file.hpp"
+#include "support/files.hpp"
+#include "support/output_directory.hpp"
 
 namespace talus {
 namespace {
@@ -56,11 +58,30 @@ std::vector<Record> counted(const Plan& plan, const std::vector<Record>& runs) {
   return {runs.begin(), stop ? runs.begin() + *stop : runs.end()};
 }
 
+StudySummary publish(const StudyPaths& paths, const Plan& plan, const RecordSource& runs, const RecordSource& floor) {
+  StudySummary summary(plan);
+  AtomicFile realizations(paths.realizations()), noise_floor(paths.noise_floor());
+  realizations.write(csv_header(index_name));
+  runs([&](const Record& r) {
+    if (summary.add(r)) realizations.write(csv_line(r));
+  });
+  noise_floor.write(csv_header(replicate_name));
+  floor([&](const Record& r) {
+    summary.add_replicate(r);
+    noise_floor.write(csv_line(r));
+  });
+  realizations.commit();
+  noise_floor.commit();
+  write_file_atomically(paths.summary(), summary.json().dump(2) + "\n");
+  return summary;
+}
+
 void write_tables(const StudyPaths& paths, const Plan& plan, const std::vector<Record>& runs,
                   const std::vector<Record>& floor) {
-  write_file_atomically(paths.realizations(), to_csv(runs, index_name));
-  write_file_atomically(paths.noise_floor(), to_csv(floor, replicate_name));
-  write_file_atomically(paths.summary(), summarize(plan, runs, floor).dump(2) + "\n");
+  const auto source = [](const std::vector<Record>& records) {
+    return [&records](const RecordSink& take) { std::for_each(records.begin(), records.end(), take); };
+  };
+  publish(paths, plan, source(runs), source(floor));
 }
 
 Tables read_tables(const fs::path& directory) {

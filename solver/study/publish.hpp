@@ -2,19 +2,30 @@
 // The files of a study that others read, and the way back from its tables.
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <functional>
 #include <vector>
 
 #include "study/paths.hpp"
 #include "study/plan.hpp"
 #include "study/record.hpp"
+#include "study/summary.hpp"
 
 namespace talus {
 
 /// The records that the study counts: all, or, where it stopped early, those before the stop.
 std::vector<Record> counted(const Plan& plan, const std::vector<Record>& runs);
 
-/// Writes realizations.csv, noise_floor.csv and study.json, each by rename.
+/// Takes a record.
+using RecordSink = std::function<void(const Record&)>;
+/// Gives the records of one kind to a sink, in order of index.
+using RecordSource = std::function<void(const RecordSink&)>;
+
+/// Writes realizations.csv, noise_floor.csv and study.json, each by rename. Records pass one by one; memory: that of
+/// StudySummary.
+/// @throws IoError
+StudySummary publish(const StudyPaths& paths, const Plan& plan, const RecordSource& runs, const RecordSource& floor);
+
+/// The same from records in memory.
 void write_tables(const StudyPaths& paths, const Plan& plan, const std::vector<Record>& runs,
                   const std::vector<Record>& floor);
 

@@ -3,58 +3,48 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <map>
 
-#include "monte_carlo/histogram.hpp"
-#include "monte_carlo/statistics.hpp"
+#include "statistics/histogram.hpp"
+#include "statistics/sample.hpp"
 #include "study/stop_rule.hpp"
 
 namespace talus {
 namespace {
 
-using nlohmann::ordered_json;
-
 constexpr std::array<double, 9> probabilities{0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99};
 constexpr double exceedance_points = 40.0;  // about so many along the curve
 
-ordered_json json(const std::optional<double>& value) { return value ? ordered_json(*value) : ordered_json(); }
-ordered_json json(const Interval& interval) { return ordered_json::array({json(interval.lo), json(interval.hi)}); }
-ordered_json json(const std::optional<Interval>& interval) { return interval ? json(*interval) : ordered_json(); }
+Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+Json json_of(const Interval& interval) { return Json::array({json_of(interval.lo), json_of(interval.hi)}); }
+Json json_of(const std::optional<Interval>& interval) { return interval ? json_of(*interval) : Json(); }
 
-std::vector<double> values(const std::vector<Record>& records, double Measures::*member) {
-  std::vector<double> all;
-  for (const Record& r : records)
-    if (r.done) all.push_back(r.measures.*member);
-  return all;
-}
-
-ordered_json moments_json(const SampleMoments& m) {
+Json moments_json(const SampleMoments& m) {
   return {{"n", m.n},
-          {"mean", json(m.mean)},
-          {"mean_ci95", json(m.mean_ci95)},
-          {"stdev", json(m.stdev)},
-          {"stdev_ci95", json(m.stdev_ci95)},
-          {"skewness", json(m.skewness)},
-          {"excess_kurtosis", json(m.excess_kurtosis)},
-          {"min", json(m.min)},
-          {"max", json(m.max)}};
+          {"mean", json_of(m.mean)},
+          {"mean_ci95", json_of(m.mean_ci95)},
+          {"stdev", json_of(m.stdev)},
+          {"stdev_ci95", json_of(m.stdev_ci95)},
+          {"skewness", json_of(m.skewness)},
+          {"excess_kurtosis", json_of(m.excess_kurtosis)},
+          {"min", json_of(m.min)},
+          {"max", json_of(m.max)}};
 }
 
-ordered_json quantiles_json(const std::vector<double>& sorted, std::int64_t failed) {
-  ordered_json all = ordered_json::array();
+Json quantiles_json(const std::vector<double>& sorted, std::int64_t failed) {
+  Json all = Json::array();
   if (sorted.empty()) return all;
   for (double p : probabilities) {
     const Quantile q = quantile(sorted, p, failed);
     all.push_back({{"p", q.p},
                    {"value", q.value},
-                   {"ci95", json(q.ci95)},
-                   {"if_failed_all_below", json(q.if_failed_below)},
-                   {"if_failed_all_above", json(q.if_failed_above)}});
+                   {"ci95", json_of(q.ci95)},
+                   {"if_failed_all_below", json_of(q.if_failed_below)},
+                   {"if_failed_all_above", json_of(q.if_failed_above)}});
   }
   return all;
 }
 
-ordered_json histogram_json(const std::vector<double>& sorted, const std::vector<double>& given) {
+Json histogram_json(const std::vector<double>& sorted, const std::vector<double>& given) {
   const std::vector<double> edges = given.empty() ? round_edges(sorted) : given;
   const Histogram h = edges.empty() ? Histogram{} : histogram(sorted, edges);
   return {{"edges", h.edges},
@@ -65,8 +55,8 @@ ordered_json histogram_json(const std::vector<double>& sorted, const std::vector
           {"edges_given", !given.empty()}};
 }
 
-ordered_json exceedance_json(const std::vector<double>& sorted, std::int64_t failed) {
-  ordered_json all = ordered_json::array();
+Json exceedance_json(const std::vector<double>& sorted, std::int64_t failed) {
+  Json all = Json::array();
   if (sorted.empty()) return all;
   const double range = sorted.back() - sorted.front();
   const auto points = round_grid(sorted.front(), sorted.back(), range > 0.0 ? range / exceedance_points : 0.1);
@@ -82,87 +72,10 @@ ordered_json exceedance_json(const std::vector<double>& sorted, std::int64_t fai
   return all;
 }
 
-/// One measure: its statistics, and how much of its spread is the numerics' own.
-ordered_json quantity_json(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor,
-                           const MeasureColumn& column) {
-  std::vector<double> sample = values(runs, column.member);
-  const SampleMoments m = moments(sample);
-  const SampleMoments noise = moments(values(floor, column.member));
-  const std::optional<Ratio> ratio = stdev_ratio(m, noise);
-  const auto failed = static_cast<std::int64_t>(runs.size() - sample.size());
-  // Given edges are run-out distances; the centre of mass lies elsewhere.
-  const bool front = column.member != &Measures::centre_of_mass_x;
+bool is_hypercube(const Plan& plan) { return plan.study.sampling == Sampling::latin_hypercube; }
 
-  ordered_json quantity = moments_json(m);
-  std::sort(sample.begin(), sample.end());
-  quantity["quantiles"] = quantiles_json(sample, failed);
-  quantity["histogram"] = histogram_json(sample, front ? plan.study.histogram_edges : std::vector<double>{});
-  quantity["exceedance"] = exceedance_json(sample, failed);
-  quantity["noise_floor_stdev"] = json(noise.stdev);
-  quantity["noise_floor_stdev_ci95"] = json(noise.stdev_ci95);
-  quantity["stdev_over_noise_floor"] = ratio ? ordered_json(ratio->value) : ordered_json();
-  quantity["stdev_over_noise_floor_ci95"] = ratio ? json(ratio->ci95) : ordered_json();
-  return quantity;
-}
-
-ordered_json mean_phi_json(const std::vector<Record>& runs) {
-  std::vector<double> phi;
-  for (const Record& r : runs)
-    if (r.done) phi.push_back(r.mean_phi_deg);
-  ordered_json all = moments_json(moments(phi));
-  all["correlation_with_influence_zone"] = json(correlation(phi, values(runs, &Measures::influence_zone)));
-  return all;
-}
-
-/// Indices without a record as inclusive ranges.
-ordered_json missing_json(const std::vector<Record>& runs, std::int64_t until) {
-  ordered_json ranges = ordered_json::array();
-  std::int64_t next = 0;
-  const auto gap_before = [&](std::int64_t index) {
-    if (next < index) ranges.push_back({next, index - 1});
-    next = index + 1;
-  };
-  for (const Record& r : runs) gap_before(r.index);
-  gap_before(until);
-  return ranges;
-}
-
-ordered_json failures_json(const std::vector<Record>& runs) {
-  ordered_json all = ordered_json::array();
-  for (const Record& r : runs)
-    if (!r.done) all.push_back({{"index", r.index}, {"reason", r.reason}});
-  return all;
-}
-
-ordered_json realizations_json(const Plan& plan, const std::vector<Record>& runs) {
-  const auto failed = std::count_if(runs.begin(), runs.end(), [](const Record& r) { return !r.done; });
-  const std::optional<std::int64_t> stopped = stopping_size(plan, runs);
-  const std::int64_t planned = plan.study.realizations;
-  const bool early = stopped && *stopped < planned;
-  const ordered_json missing = missing_json(runs, early ? *stopped : planned);
-  return {{"planned", planned},
-          {"done", static_cast<std::int64_t>(runs.size()) - failed},
-          {"failed", failed},
-          {"complete", missing.empty()},
-          {"stopped_early", early},
-          {"missing", missing},
-          {"max_failed_share", plan.study.max_failed_share},
-          {"stop_when_ci_half_width_below_m", json(plan.study.stop_half_width)}};
-}
-
-/// Time and shares that belong to the runs as a whole.
-ordered_json effort_json(const std::vector<Record>& runs) {
-  double seconds = 0.0;
-  std::int64_t steps = 0;
-  for (const Record& r : runs) {
-    seconds += r.wall_clock;
-    steps += r.steps;
-  }
-  return {{"wall_clock_s", seconds}, {"steps", steps}};
-}
-
-ordered_json notes_json(const Plan& plan) {
-  ordered_json notes = {
+Json notes_json(const Plan& plan) {
+  Json notes = {
       {"mean_ci95", "Student's t; exact for independent draws of a normal variable, close to it for large n"},
       {"stdev_ci95", "chi-square; holds for a normal variable only, too narrow where excess_kurtosis is well above 0"},
       {"quantiles",
@@ -175,7 +88,7 @@ ordered_json notes_json(const Plan& plan) {
       {"noise_floor",
        "realization 0 and its replicates with tan(phi) scaled by 1 + 1e-6 k; a stdev near its noise_floor_stdev is "
        "numerics"}};
-  if (plan.study.sampling == Sampling::latin_hypercube)
+  if (is_hypercube(plan))
     notes["sampling"] =
         "Latin hypercube on the leading modes: the draws are not independent, so no interval here is exact; that of "
         "the mean is conservative "
@@ -187,66 +100,143 @@ ordered_json notes_json(const Plan& plan) {
   return notes;
 }
 
-/// Realization 0 is itself a replicate: the one with k = 0.
-std::vector<Record> with_origin(const std::vector<Record>& floor, const std::vector<Record>& runs) {
-  std::vector<Record> all;
-  if (!floor.empty() && !runs.empty() && runs.front().index == 0) all.push_back(runs.front());
-  all.insert(all.end(), floor.begin(), floor.end());
+/// Values of one measure over the records that are done.
+std::vector<double> values(const std::vector<Record>& records, double Measures::*member) {
+  std::vector<double> all;
+  for (const Record& r : records)
+    if (r.done) all.push_back(r.measures.*member);
   return all;
-}
-
-ordered_json floor_json(const Plan& plan, const std::vector<Record>& floor) {
-  const auto done = std::count_if(floor.begin(), floor.end(), [](const Record& r) { return r.done; });
-  return {{"replicates_planned", plan.study.noise_floor_replicates},
-          {"replicates_done", done},
-          {"replicates_failed", static_cast<std::int64_t>(floor.size()) - done},
-          {"relative_step_of_tan_phi", 1e-6}};
-}
-
-ordered_json extremes_json(const std::vector<Record>& runs) {
-  ordered_json shortest, longest;
-  const Record* lo = nullptr;
-  const Record* hi = nullptr;
-  for (const Record& r : runs) {
-    if (!r.done) continue;
-    if (!lo || r.measures.influence_zone < lo->measures.influence_zone) lo = &r;
-    if (!hi || r.measures.influence_zone > hi->measures.influence_zone) hi = &r;
-  }
-  return {{"shortest_realization", lo ? ordered_json(lo->index) : ordered_json()},
-          {"farthest_realization", hi ? ordered_json(hi->index) : ordered_json()}};
 }
 
 }  // namespace
 
-bool too_many_failed(const Plan& plan, const std::vector<Record>& runs) {
-  const auto failed = std::count_if(runs.begin(), runs.end(), [](const Record& r) { return !r.done; });
-  return static_cast<double>(failed) > plan.study.max_failed_share * static_cast<double>(runs.size());
+bool StudySummary::add(const Record& record) {
+  if (stop_.size()) return false;
+  const double zone = record.measures.influence_zone;
+  stop_.add(record.index, record.done ? std::optional(zone) : std::nullopt);
+  if (next_ < record.index) missing_.push_back({next_, record.index - 1});
+  next_ = record.index + 1;
+  if (record.index == 0) origin_ = record;
+  if (!record.done) {
+    failures_.push_back({{"index", record.index}, {"reason", record.reason}});
+    return true;
+  }
+  for (std::size_t k = 0; k < measure_table.size(); ++k)
+    samples_[k].push_back(record.measures.*measure_table[k].member);
+  phi_.push_back(record.mean_phi_deg);
+  wall_clock_ += record.wall_clock;
+  steps_ += record.steps;
+  if (!captured_variance_) captured_variance_ = record.captured_variance;
+  if (!shortest_ || zone < shortest_->influence_zone) shortest_ = {record.index, zone};
+  if (!farthest_ || zone > farthest_->influence_zone) farthest_ = {record.index, zone};
+  return true;
 }
 
-ordered_json summarize(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor) {
-  const std::vector<Record> noise = with_origin(floor, runs);
-  const auto done = std::find_if(runs.begin(), runs.end(), [](const Record& r) { return r.done; });
-  ordered_json study = {
-      {"title", plan.title},
-      {"provenance",
-       {{"program", "talus"},
-        {"version", plan.version},
-        {"seed", plan.seed},
-        {"case_hash", plan.case_hash},
-        {"sampling", plan.study.sampling == Sampling::latin_hypercube ? "latin_hypercube" : "monte_carlo"}}},
-      {"realizations", realizations_json(plan, runs)}};
-  if (plan.study.sampling == Sampling::latin_hypercube)
-    study["provenance"]["stratified_modes"] = plan.study.stratified_modes;
-  for (const MeasureColumn& column : measure_columns)
-    study["quantities"][column.key] = quantity_json(plan, runs, noise, column);
-  study["captured_variance"] = done == runs.end() ? ordered_json() : ordered_json(done->captured_variance);
-  study["mean_friction_angle_deg"] = mean_phi_json(runs);
-  study["noise_floor"] = floor_json(plan, floor);
-  study["extremes"] = extremes_json(runs);
-  study["failures"] = failures_json(runs);
-  study["effort"] = effort_json(runs);
-  study["notes"] = notes_json(plan);
+Json StudySummary::realizations_json() const {
+  const std::int64_t planned = plan_.study.realizations;
+  const std::int64_t until = stopped_early() ? *stop_.size() : planned;
+  Json missing = missing_;
+  if (next_ < until) missing.push_back({next_, until - 1});
+  return {{"planned", planned},
+          {"done", done()},
+          {"failed", failed()},
+          {"complete", missing.empty()},
+          {"stopped_early", stopped_early()},
+          {"missing", missing},
+          {"max_failed_share", plan_.study.max_failed_share},
+          {"stop_when_ci_half_width_below_m", json_of(plan_.study.stop_half_width)}};
+}
+
+/// One measure: its statistics, and how much of its spread is the numerics' own.
+Json StudySummary::quantity_json(std::size_t k) const {
+  const Measure& measure = measure_table[k];
+  std::vector<Record> replicates = replicates_;
+  if (origin_ && !replicates.empty()) replicates.insert(replicates.begin(), *origin_);
+  const SampleMoments m = moments(samples_[k]);
+  const SampleMoments noise = moments(values(replicates, measure.member));
+  const std::optional<Ratio> ratio = stdev_ratio(m, noise);
+
+  Json quantity = moments_json(m);
+  std::vector<double> sorted = samples_[k];
+  std::sort(sorted.begin(), sorted.end());
+  quantity["quantiles"] = quantiles_json(sorted, failed());
+  quantity["histogram"] = histogram_json(sorted, measure.front ? plan_.study.histogram_edges : std::vector<double>{});
+  quantity["exceedance"] = exceedance_json(sorted, failed());
+  quantity["noise_floor_stdev"] = json_of(noise.stdev);
+  quantity["noise_floor_stdev_ci95"] = json_of(noise.stdev_ci95);
+  quantity["stdev_over_noise_floor"] = ratio ? Json(ratio->value) : Json();
+  quantity["stdev_over_noise_floor_ci95"] = ratio ? json_of(ratio->ci95) : Json();
+  return quantity;
+}
+
+Json StudySummary::mean_phi_json() const {
+  Json all = moments_json(moments(phi_));
+  all["correlation_with_influence_zone"] = json_of(correlation(phi_, samples_[0]));
+  return all;
+}
+
+Json StudySummary::replicates_json() const {
+  const auto done = std::count_if(replicates_.begin(), replicates_.end(), [](const Record& r) { return r.done; });
+  return {{"replicates_planned", plan_.study.noise_floor_replicates},
+          {"replicates_done", done},
+          {"replicates_failed", static_cast<std::int64_t>(replicates_.size()) - done},
+          {"relative_step_of_tan_phi", 1e-6}};
+}
+
+Json StudySummary::json() const {
+  Json study = {{"title", plan_.title},
+                {"provenance",
+                 {{"program", "talus"},
+                  {"version", plan_.version},
+                  {"seed", plan_.seed},
+                  {"case_hash", plan_.case_hash},
+                  {"sampling", is_hypercube(plan_) ? "latin_hypercube" : "monte_carlo"}}},
+                {"realizations", realizations_json()}};
+  if (is_hypercube(plan_)) study["provenance"]["stratified_modes"] = plan_.study.stratified_modes;
+  for (std::size_t k = 0; k < measure_table.size(); ++k) study["quantities"][measure_table[k].key] = quantity_json(k);
+  study["captured_variance"] = json_of(captured_variance_);
+  study["mean_friction_angle_deg"] = mean_phi_json();
+  study["noise_floor"] = replicates_json();
+  study["extremes"] = {{"shortest_realization", shortest_ ? Json(shortest_->index) : Json()},
+                       {"farthest_realization", farthest_ ? Json(farthest_->index) : Json()}};
+  study["failures"] = failures_;
+  study["effort"] = {{"wall_clock_s", wall_clock_}, {"steps", steps_}};
+  study["notes"] = notes_json(plan_);
   return study;
+}
+
+Json summarize(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor) {
+  StudySummary summary(plan);
+  for (const Record& r : runs) summary.add(r);
+  for (const Record& r : floor) summary.add_replicate(r);
+  return summary.json();
+}
+
+Json distribution(const Plan& plan, const Measure& measure, const MeasureSample& sample, const Bins& bins) {
+  const SampleMoments m = moments(sample.values);
+  const SampleMoments noise = moments(sample.noise);
+  const std::optional<Ratio> ratio = stdev_ratio(m, noise);
+  std::vector<double> sorted = sample.values;
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<double> edges = bins.edges;
+  if (bins.count > 0) edges = equal_edges(sorted, bins.count);
+  if (edges.empty() && measure.front) edges = plan.study.histogram_edges;
+  Json histogram = histogram_json(sorted, edges);
+  if (bins.count > 0) histogram["edges_given"] = false;
+  return {{"quantity", measure.key},
+          {"planned", plan.study.realizations},
+          {"done", m.n},
+          {"failed", sample.failed},
+          {"complete", sample.complete},
+          {"n", m.n},
+          {"mean", json_of(m.mean)},
+          {"mean_ci95", json_of(m.mean_ci95)},
+          {"stdev", json_of(m.stdev)},
+          {"min", json_of(m.min)},
+          {"max", json_of(m.max)},
+          {"noise_floor_stdev", json_of(noise.stdev)},
+          {"stdev_over_noise_floor", ratio ? Json(ratio->value) : Json()},
+          {"histogram", std::move(histogram)}};
 }
 
 }  // namespace talus

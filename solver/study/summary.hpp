@@ -1,21 +1,85 @@
 #pragma once
 // study.json: everything a study says, from its plan and its records alone.
 
-#include <nlohmann/json.hpp>
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "study/plan.hpp"
 #include "study/record.hpp"
+#include "study/stop_rule.hpp"
+#include "support/json.hpp"
+#include "support/measures.hpp"
 
 namespace talus {
 
-/// The content of study.json (schemas/study.schema.json). A pure function: a study and `talus stats` on its tables give
-/// the same.
+/// Takes in the records of a study one by one and gives study.json (schemas/study.schema.json). Holds 8 bytes a measure
+/// and realization, and the reasons of failures; the time is that of sorting each measure once.
+class StudySummary {
+ public:
+  explicit StudySummary(const Plan& plan) : plan_(plan), stop_(plan.study.stop_half_width) {}
+
+  /// The next realization, in order of index.
+  /// @return false where the study ended before it (StopRule): it is not counted
+  bool add(const Record& record);
+  /// The next replicate of realization 0 that measures the numerical noise.
+  void add_replicate(const Record& record) { replicates_.push_back(record); }
+
+  /// The content of study.json.
+  Json json() const;
+
+  std::int64_t done() const { return static_cast<std::int64_t>(phi_.size()); }
+  std::int64_t failed() const { return static_cast<std::int64_t>(failures_.size()); }
+  /// The study ended before its planned number.
+  bool stopped_early() const { return stop_.size() && *stop_.size() < plan_.study.realizations; }
+
+ private:
+  struct Extreme {
+    std::int64_t index;
+    double influence_zone;
+  };
+
+  Json realizations_json() const;
+  Json quantity_json(std::size_t k) const;
+  Json mean_phi_json() const;
+  Json replicates_json() const;
+
+  Plan plan_;
+  StopRule stop_;
+  std::array<std::vector<double>, measure_table.size()> samples_;  ///< of the done ones, in order of index
+  std::vector<double> phi_;                                        ///< mean friction angles [deg]
+  Json failures_ = Json::array();
+  Json missing_ = Json::array();  ///< ranges of indices without a record, up to next_
+  std::int64_t next_ = 0;         ///< one more than the last index
+  double wall_clock_ = 0.0;       ///< [s]
+  std::int64_t steps_ = 0;
+  std::optional<double> captured_variance_;
+  std::optional<Extreme> shortest_, farthest_;
+  std::optional<Record> origin_;  ///< realization 0: itself a replicate, the one with k = 0
+  std::vector<Record> replicates_;
+};
+
+/// The content of study.json. A pure function: a study and `talus stats` on its tables give the same.
 /// @param runs   in order of index; at most one per realization
 /// @param floor  replicates of realization 0 that differ by rounding-size changes only, in order
-nlohmann::ordered_json summarize(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor);
+Json summarize(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor);
 
-/// More realizations failed than `plan.study.max_failed_share` of those made.
-bool too_many_failed(const Plan& plan, const std::vector<Record>& runs);
+/// How the values of one measure are distributed.
+struct MeasureSample {
+  std::vector<double> values;  ///< of the realizations done, in order of index
+  std::vector<double> noise;   ///< of realization 0 and its replicates, in order; empty without replicates
+  std::int64_t failed = 0;
+  bool complete = false;  ///< every realization of the study has ended
+};
+
+/// The bins to count in: given edges, so many equal bins, or, with neither, those of study.json.
+struct Bins {
+  std::size_t count = 0;      ///< 0: not asked for
+  std::vector<double> edges;  ///< [m], increasing
+};
+
+/// What `talus stats --quantity` prints and the histogram of talusd answers.
+Json distribution(const Plan& plan, const Measure& measure, const MeasureSample& sample, const Bins& bins);
 
 }  // namespace talus

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "case/load.hpp"
-#include "case/parse.hpp"
 #include "schema_check.hpp"
+#include "support/json.hpp"
 
 namespace talus {
 namespace {

@@ -1,7 +1,7 @@
 // Bytes as a case file: a case or faults, nothing else.
 
 #include "case/load.hpp"
-#include "case/parse.hpp"
+#include "support/json.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

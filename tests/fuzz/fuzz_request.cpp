@@ -29,7 +29,7 @@ void check_rewritten(const Head& head) {
 
 void read_body(std::string_view body) {
   try {
-    const Json json = parse_json(body);
+    const Json json = parse_body(body);
     if (!json.is_object() || !json.contains("inputs") || !json.at("inputs").is_object()) return;
     Checker outputs;
     read_outputs(json, {"s", "x"}, outputs);

@@ -102,10 +102,9 @@ class Umbridge(ServiceTest):
             error("/Evaluate", {"name": "slope", **wrong}, "InvalidInput")
         for body in ("", "{", "[]"):
             self.assertEqual(self.daemon.post("/Evaluate", body).status, 400)
-        self.assertEqual(
-            self.daemon.post("/Evaluate", "{").json,
-            {"error": {"type": "InvalidInput", "message": "the body is not JSON"}},
-        )
+        said = self.daemon.post("/Evaluate", "{").json["error"]
+        self.assertEqual(said["type"], "InvalidInput")
+        self.assertIn("the body is not JSON;  body:1:2: syntax error", said["message"])
 
     def test_the_quotas_hold_here_too(self):
         body = {"name": "slope", "input": [[0.0] * self.TERMS, [1e6]], "config": {"parameters": ["end_s"]}}
@@ -199,6 +198,17 @@ class Verbs(ServiceTest):
         for summary in (remote, local):
             summary.pop("effort")
         self.assertEqual(remote, local)
+
+    def test_both_front_ends_take_the_same_documents(self):
+        self.start()
+        path = self.dir / "case.json"
+        local = ["study", path, "--realizations", 1, "--out", self.dir / "local", "--prepare"]
+        path.write_text(json.dumps(case(description="slope " * 833)))  # 4998 characters
+        self.talus(*local)
+        self.talus("submit", path, "--realizations", 1)
+        path.write_text(json.dumps(case(description="x" * 65537)))
+        self.assertIn("longer than 65536 bytes", self.talus(*local, code=3).stderr)
+        self.assertIn("longer than 65536 bytes", self.talus("submit", path, "--realizations", 1, code=3).stderr)
 
     def test_errors_of_the_server_are_shown(self):
         self.start("--max-realizations", 2)

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/clock.hpp"
+#include "base/clock.hpp"
 
 namespace talus::service {
 namespace {

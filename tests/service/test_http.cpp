@@ -5,12 +5,12 @@
 #include <fstream>
 #include <set>
 
+#include "base/digest.hpp"
 #include "http/problem.hpp"
 #include "http/router.hpp"
 #include "http/tokens.hpp"
 #include "options.hpp"
 #include "queue/database.hpp"
-#include "support/digest.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus::service {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "case/load.hpp"
-#include "case/parse.hpp"
+#include "support/json.hpp"
 
 namespace talus::test {
 

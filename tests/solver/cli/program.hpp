@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "io/files.hpp"
+#include "support/files.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus::test {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "cli/xi_file.hpp"
-#include "io/files.hpp"
-#include "math/error.hpp"
+#include "support/error.hpp"
+#include "support/files.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus::cli {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "io/files.hpp"
 #include "study/csv.hpp"
 #include "study/summary.hpp"
+#include "support/files.hpp"
 
 namespace talus::test {
 

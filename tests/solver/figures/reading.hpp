@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/files.hpp"
+#include "support/files.hpp"
 
 namespace talus::test {
 

@@ -5,8 +5,8 @@
 #include "figures/figures.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
-#include "math/error.hpp"
 #include "reading.hpp"
+#include "support/error.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus {

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "figures/gnuplot.hpp"
-#include "math/error.hpp"
 #include "reading.hpp"
+#include "support/error.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus::figures {

@@ -6,8 +6,8 @@
 #include "example_frame.hpp"
 #include "figures/gnuplot.hpp"
 #include "figures/profile.hpp"
-#include "math/error.hpp"
 #include "reading.hpp"
+#include "support/error.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus::figures {

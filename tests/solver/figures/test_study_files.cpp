@@ -2,8 +2,8 @@
 
 #include "example_study.hpp"
 #include "figures/study_files.hpp"
-#include "math/error.hpp"
 #include "reading.hpp"
+#include "support/error.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus::figures {

@@ -4,11 +4,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "faults.hpp"
 #include "io/checkpoint.hpp"
-#include "io/checksum.hpp"
-#include "io/files.hpp"
 #include "io/hdf5.hpp"
+#include "io_faults.hpp"
+#include "support/digest.hpp"
+#include "support/files.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus {

@@ -1,8 +1,8 @@
 #include <cstdint>
 
-#include "faults.hpp"
-#include "io/files.hpp"
 #include "io/hdf5.hpp"
+#include "io_faults.hpp"
+#include "support/files.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus {

@@ -3,11 +3,11 @@
 #include <limits>
 #include <stdexcept>
 
-#include "faults.hpp"
-#include "io/files.hpp"
 #include "io/result_json.hpp"
+#include "io_faults.hpp"
 #include "math/angle.hpp"
 #include "schema_check.hpp"
+#include "support/files.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus {

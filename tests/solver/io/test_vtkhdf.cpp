@@ -6,10 +6,10 @@
 #include <random>
 #include <stdexcept>
 
-#include "faults.hpp"
-#include "io/files.hpp"
 #include "io/vtkhdf.hpp"
+#include "io_faults.hpp"
 #include "known_frame.hpp"
+#include "support/files.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "linear_sampler.hpp"
-#include "math/error.hpp"
 #include "random_field/circulant_embedding.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

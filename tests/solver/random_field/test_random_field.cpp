@@ -6,11 +6,11 @@
 #include <functional>
 #include <limits>
 
-#include "math/error.hpp"
 #include "random_field/circulant_embedding.hpp"
 #include "random_field/karhunen_loeve.hpp"
 #include "random_field/random_field.hpp"
 #include "random_field/stream.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

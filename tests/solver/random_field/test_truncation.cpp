@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "math/error.hpp"
 #include "random_field/truncation.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include "math/error.hpp"
 #include "models.hpp"
 #include "simulation/observables.hpp"
 #include "simulation/simulation.hpp"
+#include "support/error.hpp"
 
 namespace talus {
 namespace {

@@ -1,6 +1,6 @@
-#include "math/error.hpp"
 #include "studies.hpp"
 #include "study/csv.hpp"
+#include "support/error.hpp"
 
 using namespace talus;
 using namespace talus::fixtures;

@@ -1,8 +1,9 @@
 #include <cstdint>
 
-#include "math/error.hpp"
+#include "case/study_plan.hpp"
 #include "studies.hpp"
 #include "study/plan.hpp"
+#include "support/error.hpp"
 
 using namespace talus;
 using namespace talus::fixtures;
@@ -115,5 +116,3 @@ TEST(Plan, RefusesStudiesThatMakeNoSense) {
   c.value.study.stop_half_width = 0.1;
   EXPECT_EQ(pointer_of_fault(c), "/study/stop_when_ci_half_width_below_m");
 }
-
-TEST(Plan, SeedFromTheClockIsExactInJson) { EXPECT_LT(seed_from_clock(), std::uint64_t{1} << 53); }

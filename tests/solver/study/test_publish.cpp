@@ -1,8 +1,8 @@
-#include "math/error.hpp"
 #include "studies.hpp"
-#include "study/driver.hpp"
 #include "study/publish.hpp"
+#include "study/run_study.hpp"
 #include "study/summary.hpp"
+#include "support/error.hpp"
 
 using namespace talus;
 using namespace talus::fixtures;

@@ -1,5 +1,5 @@
-#include "monte_carlo/histogram.hpp"
 #include "schema_check.hpp"
+#include "statistics/histogram.hpp"
 #include "studies.hpp"
 #include "study/summary.hpp"
 
@@ -53,7 +53,7 @@ TEST(Summary, CountsWhatWasPlannedMadeAndMissed) {
 
 TEST(Summary, StatisticsOfEachMeasureAreThoseOfItsColumn) {
   const auto study = summarize(plan(8), some_runs(), {});
-  for (const MeasureColumn& column : measure_columns) {
+  for (const Measure& column : measure_table) {
     std::vector<double> sample;
     for (const Record& r : some_runs())
       if (r.done) sample.push_back(r.measures.*column.member);
@@ -125,14 +125,4 @@ TEST(Summary, SaysWhatALatinHypercubeMeansForIntervals) {
   const auto study = summarize(p, some_runs(), {});
   EXPECT_NE(study["notes"]["sampling"].get<std::string>().find("conservative"), std::string::npos);
   EXPECT_EQ(study["provenance"]["sampling"], "latin_hypercube");
-}
-
-TEST(Summary, TooManyFailedIsAShareOfThoseMade) {
-  Plan p = plan(1000);
-  p.study.max_failed_share = 0.25;
-  std::vector<Record> runs{failed(0, "x"), done(1, 1.0), done(2, 1.0), done(3, 1.0)};
-  EXPECT_FALSE(too_many_failed(p, runs));
-  runs.pop_back();
-  EXPECT_TRUE(too_many_failed(p, runs));
-  EXPECT_FALSE(too_many_failed(p, {}));
 }

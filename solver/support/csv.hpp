@@ -1,0 +1,43 @@
+#pragma once
+// Comma-separated values (RFC 4180), read row by row and written field by field.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace talus {
+
+/// Whose table it is.
+enum class CsvStyle {
+  strict,   ///< written by a program: commas, every line a row
+  by_hand,  ///< a person's: commas, semicolons or tabs, # comments, a byte order mark, blanks around fields
+};
+
+/// Goes through the rows of a text; holds one row at a time. Blank lines are skipped; a row ends with its line.
+class CsvRows {
+ public:
+  explicit CsvRows(std::string_view text, CsvStyle style = CsvStyle::strict);
+
+  /// Reads the next row; false at the end of the text.
+  bool next();
+  /// The line of the row, counted from 1.
+  int line() const { return line_; }
+  /// The fields of the row without their quotation marks; none at all where a quotation mark is not closed.
+  const std::vector<std::string>& fields() const { return fields_; }
+  /// The row as it stands in the text, without the end of its line.
+  std::string_view text() const { return row_; }
+
+ private:
+  void split();
+
+  std::string_view rest_;
+  CsvStyle style_;
+  std::string_view row_;
+  std::vector<std::string> fields_;
+  int line_ = 0;
+};
+
+/// A text as a field on one line: in quotation marks, line breaks as blanks; an empty text stays empty.
+std::string csv_quoted(std::string_view text);
+
+}  // namespace talus

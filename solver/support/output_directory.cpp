@@ -1,0 +1,112 @@
+#include "support/output_directory.hpp"
+
+#include <cerrno>
+#include <system_error>
+
+#include "support/error.hpp"
+#include "support/files.hpp"
+#include "support/json.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* marker_name = "talus-output.json";
+constexpr const char* lock_name = "talus-output.lock";
+constexpr const char* kind_names[] = {"run", "study"};
+
+const char* name(OutputKind kind) { return kind_names[static_cast<int>(kind)]; }
+
+[[noreturn]] void refuse(const fs::path& directory, const std::string& why) {
+  throw IoError("cannot write into " + directory.string() + ": " + why +
+                "; choose another directory or remove this one");
+}
+
+/// A leftover of a write_file_atomically that was killed.
+bool is_temporary(const fs::path& file) {
+  const std::string text = file.filename().string();
+  return text.starts_with('.') && text.find(".tmp-") != std::string::npos;
+}
+
+/// A directory is ours once it has the marker; before that it may only hold what a killed claim leaves behind.
+void refuse_foreign(const fs::path& directory) {
+  if (find_output_marker(directory)) return;
+  for (const auto& entry : fs::directory_iterator(directory)) {
+    const fs::path file = entry.path().filename();
+    const bool of_a_claim =
+        file == lock_name || (is_temporary(file) && file.string().find(marker_name) != std::string::npos);
+    if (!of_a_claim) refuse(directory, "it holds files that are not of Talus (" + file.string() + ")");
+  }
+}
+
+/// The lock of the directory; an empty descriptor on a file system without locks.
+FileDescriptor lock(const fs::path& directory) try {
+  FileDescriptor file = try_lock(directory / lock_name, false);
+  if (file) return file;
+  throw IoError("cannot write into " + directory.string() +
+                ": another process of Talus is at work there; wait for it or choose another directory");
+} catch (const IoError& e) {
+  if (e.error == ENOSYS || e.error == EOPNOTSUPP || e.error == ENOLCK) return FileDescriptor();
+  throw;
+}
+
+void remove_temporaries(const fs::path& directory) {
+  for (const auto& entry : fs::directory_iterator(directory))
+    if (entry.is_regular_file() && is_temporary(entry.path())) fs::remove(entry.path());
+}
+
+}  // namespace
+
+std::optional<OutputMarker> find_output_marker(const fs::path& directory) {
+  const fs::path path = directory / marker_name;
+  std::error_code error;
+  if (!fs::exists(path, error) && !error) return std::nullopt;
+  try {
+    const Json json = read_json(path, 1 << 16);
+    const auto kind = json.at("kind").get<std::string>();
+    if (kind != "run" && kind != "study")
+      throw IoError(path.string() + ": /kind is \"" + kind + "\", not run or study");
+    return OutputMarker{.kind = kind == "run" ? OutputKind::run : OutputKind::study,
+                        .case_hash = json.at("case_hash").get<std::string>(),
+                        .finished = json.at("finished").get<bool>()};
+  } catch (const nlohmann::json::exception&) {
+    throw IoError(path.string() + " is not a marker of Talus; remove the directory or choose another one");
+  }
+}
+
+OutputDirectory::OutputDirectory(fs::path path, OutputKind kind, const std::string& case_hash, bool resume)
+    : path_(std::move(path)), marker_{.kind = kind, .case_hash = case_hash} {
+  try {
+    fs::create_directories(path_);
+    refuse_foreign(path_);  // first, since the lock file would stay behind in a foreign directory
+    lock_ = lock(path_);
+    if (const auto old = find_output_marker(path_)) {
+      if (old->kind != kind) refuse(path_, std::string("it holds a ") + name(old->kind) + ", not a " + name(kind));
+      if (old->case_hash != case_hash)
+        refuse(path_, std::string("it holds a ") + name(kind) + " of another case (or of other settings)");
+      if (old->finished && !resume) refuse(path_, std::string("it holds a finished ") + name(kind));
+      marker_.finished = old->finished;
+      resumed_ = resume;
+    }
+    remove_temporaries(path_);
+    if (!finished()) write_marker();
+  } catch (const fs::filesystem_error& e) {
+    throw_io_error("write into", path_, e.code().value());
+  }
+}
+
+void OutputDirectory::mark_finished() {
+  marker_.finished = true;
+  write_marker();
+}
+
+void OutputDirectory::write_marker() const {
+  const Json json = {{"program", "talus"},
+                     {"kind", name(marker_.kind)},
+                     {"case_hash", marker_.case_hash},
+                     {"finished", marker_.finished}};
+  write_file_atomically(path_ / marker_name, json.dump(2) + "\n");
+}
+
+}  // namespace talus

@@ -1,0 +1,360 @@
+// The study against a stand-in for `talus run` (fake_run.cpp) that keeps a diary of what was asked of it.
+
+#include <signal.h>
+
+#include <cstdint>
+#include <map>
+#include <sstream>
+#include <thread>
+
+#include "executor/process.hpp"
+#include "studies.hpp"
+#include "study/csv.hpp"
+#include "study/run_study.hpp"
+#include "support/error.hpp"
+
+using namespace talus;
+using namespace talus::fixtures;
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// A study in a directory of its own; run() may be called again and again, as a person repeats a command.
+struct Study {
+  TemporaryDirectory directory;
+  fs::path out = directory / "study";
+  fs::path diary = directory / "diary";
+  Plan plan;
+  RunStudyOptions options;
+  std::string script;
+  int milliseconds = 5;
+  std::vector<std::string> notes;
+
+  explicit Study(std::int64_t realizations, std::string script_ = "ok")
+      : plan(fixtures::plan(realizations)), script(std::move(script_)) {
+    options.workers = 3;
+    options.threads = 2;
+    options.poll = std::chrono::milliseconds(1);
+    options.note = [this](const std::string& text) { notes.push_back(text); };
+    plan.study.max_failed_share = 1.0;
+    options.attempts = 2;
+  }
+  std::vector<std::string> program() const { return {FAKE_RUN, diary.string(), std::to_string(milliseconds), script}; }
+  StudyEnd run() {
+    options.program = program();
+    return run_study(plan, {{"title", "A slope"}, {"study", {{"realizations", plan.study.realizations}}}}, out,
+                     options);
+  }
+  /// How often the diary has a line that starts so.
+  int count(const std::string& start) const {
+    int n = 0;
+    std::istringstream in(content(diary));
+    for (std::string line; std::getline(in, line);) n += line.starts_with(start);
+    return n;
+  }
+  /// How often the diary says that the same run ended.
+  int most_ends() const {
+    std::map<std::string, int> ends;
+    std::istringstream in(content(diary));
+    int most = 0;
+    for (std::string line; std::getline(in, line);)
+      if (line.starts_with("end ")) most = std::max(most, ++ends[line]);
+    return most;
+  }
+  std::vector<Record> records() const { return read_csv(out / "realizations.csv", "index"); }
+  json summary() const { return json::parse(content(out / "study.json")); }
+  std::string text_of_notes() const {
+    std::string all;
+    for (const std::string& n : notes) all += n + "\n";
+    return all;
+  }
+};
+
+/// Runs `action` until it is true.
+template <class Condition>
+void wait_until(Condition condition) {
+  while (!condition()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+}  // namespace
+
+TEST(RunStudy, RunsEveryRealizationOnce) {
+  Study s(12);
+  s.plan.study.noise_floor_replicates = 3;
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_EQ(s.records().size(), 12u);
+  for (int i = 0; i < 12; ++i) EXPECT_EQ(s.count("begin " + std::to_string(i) + " fresh"), 1);
+  for (const char* e : {"1e-06", "2e-06", "3e-06"}) EXPECT_EQ(s.count(std::string("begin floor") + e), 1) << e;
+  EXPECT_EQ(s.summary()["realizations"]["done"], 12);
+  EXPECT_EQ(s.summary()["noise_floor"]["replicates_done"], 3);
+  EXPECT_EQ(s.summary()["realizations"]["complete"], true);
+  EXPECT_FALSE(fs::exists(s.out / "work"));
+  EXPECT_TRUE(fs::exists(s.out / "runs" / "000011.json"));
+  EXPECT_TRUE(fs::exists(s.out / "floor" / "3.json"));
+  EXPECT_EQ(json::parse(content(s.out / "case.resolved.json"))["study"]["realizations"], 12);
+}
+
+TEST(RunStudy, ResultsDoNotDependOnTheWorkers) {
+  Study one(15, "4=diverge"), many(15, "4=diverge");
+  one.plan.study.noise_floor_replicates = many.plan.study.noise_floor_replicates = 2;
+  one.options.workers = 1;
+  many.options.workers = 7;
+  one.run();
+  many.run();
+  for (const char* file :
+       {"realizations.csv", "noise_floor.csv", "study.json", "profiles/first.vtkhdf", "profiles/worst.vtkhdf"}) {
+    EXPECT_FALSE(content(one.out / file).empty()) << file;
+    EXPECT_EQ(content(one.out / file), content(many.out / file)) << file;
+  }
+}
+
+TEST(RunStudy, KeepsTheFirstAndTheFarthestProfile) {
+  Study s(9);
+  s.run();
+  const std::int64_t farthest = s.summary()["extremes"]["farthest_realization"];
+  EXPECT_NE(farthest, 0);
+  EXPECT_EQ(content(s.out / "profiles" / "first.vtkhdf"), "profile of 0");
+  EXPECT_EQ(content(s.out / "profiles" / "worst.vtkhdf"), "profile of " + std::to_string(farthest));
+  EXPECT_EQ(json::parse(content(s.out / "profiles" / "worst.json"))["realization"], farthest);
+}
+
+TEST(RunStudy, AFinishedStudyIsNotRunAgain) {
+  Study s(5);
+  s.run();
+  const std::string csv = content(s.out / "realizations.csv"), diary = content(s.diary);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_EQ(content(s.diary), diary);
+  EXPECT_EQ(content(s.out / "realizations.csv"), csv);
+}
+
+TEST(RunStudy, MoreRealizationsExtendIt) {
+  Study s(5), whole(9);
+  s.run();
+  s.plan.study.realizations = 9;
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  whole.run();
+  EXPECT_EQ(s.count("begin"), 9);
+  EXPECT_EQ(content(s.out / "study.json"), content(whole.out / "study.json"));
+}
+
+TEST(RunStudy, AnotherStudyIsRefused) {
+  Study s(5);
+  s.run();
+  s.plan.seed = 43;
+  EXPECT_THROW(s.run(), ConfigError);
+  s.plan.seed = 42;
+  s.plan.case_hash = "fedcba9876543210";
+  EXPECT_THROW(s.run(), ConfigError);
+}
+
+TEST(RunStudy, FailuresAreRecordedAndStayInTheDenominator) {
+  Study s(8, "2=diverge,5=internal,6=no-result");
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  const std::vector<Record> all = s.records();
+  ASSERT_EQ(all.size(), 8u);
+  EXPECT_EQ(all[2].reason, "diverged: diverged at step 12, particle 7");
+  EXPECT_EQ(all[5].reason, "exit code 1: starting");
+  EXPECT_EQ(all[6].reason, "it ended well but left no readable result, 2 times: starting");
+  const json why = json::parse(content(s.out / "runs" / "000002.failed.json"));
+  EXPECT_EQ(why["exit_code"], 4);
+  EXPECT_TRUE(why["signal"].is_null());
+  EXPECT_EQ(why["log_tail"], "starting\ndiverged at step 12, particle 7\n");
+  EXPECT_EQ(s.summary()["realizations"]["failed"], 3);
+  EXPECT_EQ(s.summary()["quantities"]["influence_zone_m"]["exceedance"][0]["n"], 8);
+  s.run();
+  EXPECT_EQ(s.count("begin 2 "), 1);  // never drawn again by itself
+}
+
+TEST(RunStudy, FailedOnesAreTriedAgainWhenAsked) {
+  Study s(6, "2=diverge");
+  s.run();
+  s.script = "ok";
+  s.options.retry_failed = true;
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_EQ(s.count("begin 2 "), 2);
+  EXPECT_EQ(s.count("begin"), 7);
+  EXPECT_EQ(s.summary()["realizations"]["failed"], 0);
+  EXPECT_FALSE(fs::exists(s.out / "runs" / "000002.failed.json"));
+}
+
+TEST(RunStudy, AKilledWorkerIsTriedAgain) {
+  Study s(5, "1=kill-once,3=kill,4=stop-once");
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_EQ(s.count("begin 1 "), 2);
+  EXPECT_EQ(s.count("begin 3 "), 2);
+  EXPECT_EQ(s.count("begin 4 resumed"), 1);
+  const std::vector<Record> all = s.records();
+  EXPECT_TRUE(all[1].done);
+  EXPECT_TRUE(all[4].done);
+  EXPECT_EQ(all[3].reason, "killed: Killed (signal 9), 2 times: starting");
+  EXPECT_EQ(json::parse(content(s.out / "runs" / "000003.failed.json"))["signal"], 9);
+}
+
+TEST(RunStudy, ABadCheckpointIsNotTheEnd) {
+  Study s(4, "2=bad-checkpoint");
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_EQ(s.count("begin 2 fresh"), 2);
+  EXPECT_EQ(s.count("begin 2 resumed"), 1);
+  EXPECT_EQ(s.summary()["realizations"]["done"], 4);
+}
+
+TEST(RunStudy, TooManyFailuresEndIt) {
+  Study s(40, "0=diverge,1=diverge,2=diverge,3=diverge,4=diverge");
+  s.plan.study.max_failed_share = 0.1;
+  s.options.workers = 1;
+  EXPECT_EQ(s.run(), StudyEnd::too_many_failed);
+  EXPECT_EQ(s.summary()["realizations"]["failed"], 5);
+  EXPECT_LT(s.count("begin"), 8);
+  EXPECT_EQ(s.run(), StudyEnd::too_many_failed);
+  EXPECT_LT(s.count("begin"), 8);
+}
+
+TEST(RunStudy, ABadCaseOrAFullDiskEndsItWithoutARecord) {
+  Study bad(6, "2=bad-case");
+  try {
+    bad.run();
+    FAIL();
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("/material: is bad"), std::string::npos);
+  }
+  Study full(6, "2=full");
+  full.options.workers = 1;
+  full.options.attempts = 1;
+  try {
+    full.run();
+    FAIL();
+  } catch (const IoError& e) {
+    EXPECT_NE(std::string(e.what()).find("No space left on device"), std::string::npos);
+  }
+  full.script = "ok";
+  EXPECT_EQ(full.run(), StudyEnd::finished);
+  EXPECT_EQ(full.count("begin 0 "), 1);
+  EXPECT_EQ(full.count("begin 2 "), 2);
+  EXPECT_EQ(full.summary()["realizations"]["done"], 6);
+}
+
+TEST(RunStudy, AResultOfSomethingElseIsNeverTaken) {
+  Study s(4, "2=wrong");
+  EXPECT_THROW(s.run(), IoError);
+}
+
+TEST(RunStudy, StopsEarlyAtTheSameRealizationWhateverTheWorkers) {
+  // While number 8 is slow, the others run far ahead of where the study will stop.
+  Study one(200, "8=slow"), many(200, "8=slow");
+  one.plan.study.stop_half_width = many.plan.study.stop_half_width = 0.25;
+  one.plan.study.noise_floor_replicates = many.plan.study.noise_floor_replicates = 2;
+  one.options.workers = 1;
+  many.options.workers = 9;
+  EXPECT_EQ(one.run(), StudyEnd::stopped_early);
+  EXPECT_EQ(many.run(), StudyEnd::stopped_early);
+  EXPECT_GT(many.count("end "), one.count("end "));
+  EXPECT_EQ(content(one.out / "study.json"), content(many.out / "study.json"));
+  const json n = one.summary()["realizations"];
+  EXPECT_EQ(n["planned"], 200);
+  EXPECT_EQ(n["stopped_early"], true);
+  EXPECT_EQ(n["complete"], true);
+  EXPECT_GE(n["done"], 10);
+  EXPECT_LT(n["done"], 60);
+  const json ci = one.summary()["quantities"]["influence_zone_m"]["mean_ci95"];
+  EXPECT_LE(ci[1].get<double>() - ci[0].get<double>(), 2 * 0.25);
+  EXPECT_EQ(one.summary()["noise_floor"]["replicates_done"], 2);
+}
+
+TEST(RunStudy, AskedToStopItCheckpointsAndGoesOn) {
+  Study s(12, "1=slow");  // still in mid-run whenever the others make the study stop
+  s.milliseconds = 40;
+  int asked = 0;
+  s.options.interrupts = [&] { return asked; };
+  s.options.report = [&](const Progress& p) { asked = p.done >= 3 ? 1 : 0; };
+  EXPECT_EQ(s.run(), StudyEnd::interrupted);
+  const int ended = s.count("end");
+  EXPECT_LT(ended, 12);
+  EXPECT_EQ(static_cast<int>(s.records().size()), ended);
+  asked = 0;
+  s.options.report = {};
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_GE(s.count("begin ") - s.count("end "), 1);  // those stopped half way
+  int resumed = 0;
+  for (int i = 0; i < 12; ++i) resumed += s.count("begin " + std::to_string(i) + " resumed");
+  EXPECT_GE(resumed, 1);
+  EXPECT_EQ(s.count("end "), 12);
+}
+
+TEST(RunStudy, AShareOfTheRealizationsCanBeRunElsewhere) {
+  Study s(10);
+  s.plan.study.noise_floor_replicates = 2;
+  s.options.first = 4;
+  s.options.last = 7;
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_EQ(s.count("begin"), 3);
+  EXPECT_EQ(s.summary()["realizations"]["missing"].dump(), "[[0,3],[7,9]]");
+  EXPECT_EQ(s.summary()["realizations"]["planned"], 10);
+}
+
+TEST(RunStudy, TwoStudiesDoNotShareADirectory) {
+  Study s(3);
+  s.milliseconds = 20;
+  bool tried = false;
+  s.options.report = [&](const Progress&) {
+    if (std::exchange(tried, true)) return;
+    RunStudyOptions other = s.options;
+    other.report = {};
+    EXPECT_THROW(run_study(s.plan, {}, s.out, other), IoError);
+  };
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_TRUE(tried);
+  EXPECT_EQ(s.count("begin"), 3);
+}
+
+namespace {
+
+/// Starts the study of `s` as a process, kills it with SIGKILL once `begun` runs have begun, and finishes it
+/// here.
+void kill_and_finish(Study& s, int begun) {
+  std::vector<std::string> command{STUDY_PROCESS, s.out.string(), std::to_string(s.plan.study.realizations), "3"};
+  for (const std::string& word : s.program()) command.push_back(word);
+  {
+    executor::Process study({.arguments = command}, s.directory / "log", s.directory / "log");
+    wait_until([&] { return s.count("begin ") >= begun; });
+    ASSERT_FALSE(study.poll()) << content(s.directory / "log");
+    study.signal(SIGKILL);
+    wait_until([&] { return study.poll().has_value(); });
+    EXPECT_EQ(study.poll()->signal, SIGKILL);
+  }
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+}
+
+}  // namespace
+
+TEST(RunStudy, SurvivesKill9) {
+  Study s(20), whole(20);
+  s.plan.study.noise_floor_replicates = whole.plan.study.noise_floor_replicates = 2;
+  s.plan.study.max_failed_share = whole.plan.study.max_failed_share = 0.1;
+  s.milliseconds = 15;
+  kill_and_finish(s, 10);
+  whole.run();
+  EXPECT_EQ(content(s.out / "study.json"), content(whole.out / "study.json"));
+  EXPECT_EQ(content(s.out / "realizations.csv"), content(whole.out / "realizations.csv"));
+  EXPECT_LE(s.most_ends(), 1);  // none that had ended was run again
+}
+
+TEST(RunStudy, AdoptsWhatItsOrphansFinish) {
+  Study s(12, "orphan");
+  s.plan.study.noise_floor_replicates = 2;
+  s.plan.study.max_failed_share = 0.1;
+  s.milliseconds = 300;  // much longer than the next study needs to begin
+  kill_and_finish(s, 6);
+  EXPECT_EQ(s.count("begin "), 14);  // workers outlived the study, and nothing at all was started twice
+  EXPECT_NE(s.text_of_notes().find("taken over"), std::string::npos);
+}
+
+TEST(RunStudy, ADamagedResultIsRunAgain) {
+  Study s(4);
+  s.run();
+  write(s.out / "runs" / "000002.json", "{\"influence_zone_m\": 3");
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_EQ(s.count("begin 2 "), 2);
+  EXPECT_EQ(s.count("begin "), 5);
+}
