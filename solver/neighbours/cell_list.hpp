@@ -48,7 +48,8 @@ class CellList {
     for (std::int64_t r = y0; r <= y1; ++r) {
       const std::uint32_t begin = starts_[static_cast<std::size_t>(r * columns_ + x0)];
       const std::uint32_t end = starts_[static_cast<std::size_t>(r * columns_ + x1 + 1)];
-      found.begin[found.count] = begin, found.end[found.count] = end;
+      found.begin[found.count] = begin;
+      found.end[found.count] = end;
       found.count += begin != end;
     }
     return found;

@@ -19,19 +19,24 @@ struct Bed {
 
   /// @param width  particles along x; half as many along y
   explicit Bed(std::int64_t width = 160, KernelShape kernel = KernelShape::cubic_spline) {
-    k.numerics.precision = Precision::single, k.numerics.kernel = kernel;
+    k.numerics.precision = Precision::single;
+    k.numerics.kernel = kernel;
     soil = random_soil(static_cast<int>(width), static_cast<int>(width / 2), k.dx, 3);
     for (auto* t : {&soil.txx, &soil.tyy, &soil.txy})
       for (double& value : *t) value *= 0.1;  // some yield, some do not
     walls = flat_walls(static_cast<int>(width), k.dx);
-    soil_cells = sorted(soil, 2.3 * k.h), wall_cells = sorted(walls, 2.0 * k.h);
+    soil_cells = sorted(soil, 2.3 * k.h);
+    wall_cells = sorted(walls, 2.0 * k.h);
     const auto chunks = [](const auto& first) {
       return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size;
     };
     f.fixed = FixedPoint::covering(soil_cells.box(), k.h);
-    f.soil.resize(soil.size()), f.walls.resize(walls.size());
-    f.soil_clusters = clusters(soil_cells, cluster_size()), f.wall_clusters = clusters(wall_cells, cluster_size());
-    f.soil_soil.chunks.resize(chunks(f.soil_clusters)), f.soil_wall.chunks.resize(chunks(f.soil_clusters));
+    f.soil.resize(soil.size());
+    f.walls.resize(walls.size());
+    f.soil_clusters = clusters(soil_cells, cluster_size());
+    f.wall_clusters = clusters(wall_cells, cluster_size());
+    f.soil_soil.chunks.resize(chunks(f.soil_clusters));
+    f.soil_wall.chunks.resize(chunks(f.soil_clusters));
     f.wall_soil.chunks.resize(chunks(f.wall_clusters));
     pack_walls(f, walls);
     pack_soil(f, k, soil, 0.0, {0, soil.size()});

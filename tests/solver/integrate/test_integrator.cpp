@@ -18,13 +18,20 @@ namespace {
 Soil one_particle() {
   Soil s;
   for_each_real(s, [](const char*, auto& a) { a.assign(1, 0.0); });
-  s.material = {0}, s.id = {0}, s.n_active = 1;
-  s.x[0] = 1, s.vy[0] = 1, s.rho[0] = 1, s.txx[0] = 0.5;
+  s.material = {0};
+  s.id = {0};
+  s.n_active = 1;
+  s.x[0] = 1;
+  s.vy[0] = 1;
+  s.rho[0] = 1;
+  s.txx[0] = 0.5;
   return s;
 }
 void rates(Soil& s) {
-  s.ax[0] = -s.x[0], s.ay[0] = -2 * s.vy[0];
-  s.drho[0] = -s.x[0] * s.rho[0], s.dtxx[0] = -s.txx[0] + s.x[0];
+  s.ax[0] = -s.x[0];
+  s.ay[0] = -2 * s.vy[0];
+  s.drho[0] = -s.x[0] * s.rho[0];
+  s.dtxx[0] = -s.txx[0] + s.x[0];
 }
 void step(Integrator integrator, Soil& soil, StepStart& start, double dt, const Evaluate& evaluate) {
   PlainState state(soil, start, evaluate);
@@ -74,7 +81,12 @@ TEST(Integrator, FreeFallIsExact) {
   for (const auto integrator : {Integrator::rk2, Integrator::leapfrog}) {
     Soil s = one_particle();
     StepStart start;
-    const Evaluate gravity = [](Soil& soil) { soil.ax[0] = 0, soil.ay[0] = -9.81, soil.drho[0] = 0, soil.dtxx[0] = 0; };
+    const Evaluate gravity = [](Soil& soil) {
+      soil.ax[0] = 0;
+      soil.ay[0] = -9.81;
+      soil.drho[0] = 0;
+      soil.dtxx[0] = 0;
+    };
     for (int k = 0; k < 10; ++k) step(integrator, s, start, 0.1, gravity);
     EXPECT_NEAR(s.y[0], 1.0 - 0.5 * 9.81, 1e-12);
     EXPECT_NEAR(s.vy[0], 1.0 - 9.81, 1e-12);
@@ -173,7 +185,8 @@ TEST(Integrator, ExtremesOfAStepAreThoseOfItsParticles) {
     for (std::size_t i = 0; i < soil.size(); ++i) {
       speed = std::max(speed, norm(soil.velocity(i)));
       moved = std::max(moved, std::hypot(soil.x[i] - soil.x_sorted[i], soil.y[i] - soil.y_sorted[i]));
-      left = std::min(left, soil.x[i]), right = std::max(right, soil.x[i]);
+      left = std::min(left, soil.x[i]);
+      right = std::max(right, soil.x[i]);
     }
     EXPECT_NEAR(extrema.max_speed, speed, 1e-12 * speed) << threads << " threads";
     EXPECT_NEAR(extrema.moved_since_sort, moved, 1e-12 * moved) << threads << " threads";

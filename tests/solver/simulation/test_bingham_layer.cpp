@@ -39,7 +39,10 @@ double profile_error(Yield yield, Integrator integrator, double dx) {
   while (!simulation.finished()) simulation.step(m.time.end);
   double sum = 0, n = 0;
   for (std::size_t i = 0; i < soil.size(); ++i)
-    if (std::abs(soil.x[i] - 0.3) < 0.4) sum += std::pow(soil.vx[i] - closed_form(soil.y[i]), 2), ++n;
+    if (std::abs(soil.x[i] - 0.3) < 0.4) {
+      sum += std::pow(soil.vx[i] - closed_form(soil.y[i]), 2);
+      ++n;
+    }
   EXPECT_GT(n, 50);
   return std::sqrt(sum / n) / U;
 }

@@ -10,11 +10,17 @@ namespace {
 Soil body_and_stray(double stray_mass) {
   Soil s;
   for (int row = 0; row < 3; ++row)
-    for (int col = 0; col < 4; ++col) s.x.push_back(2 + col), s.y.push_back(row);
-  s.x.push_back(20), s.y.push_back(0);
+    for (int col = 0; col < 4; ++col) {
+      s.x.push_back(2 + col);
+      s.y.push_back(row);
+    }
+  s.x.push_back(20);
+  s.y.push_back(0);
   for_each_real(s, [n = s.x.size()](const char*, auto& a) { a.resize(n, 0.0); });
-  s.m.assign(13, 1.0), s.m.back() = stray_mass;
-  s.n_active = 13, s.material.assign(13, 0);
+  s.m.assign(13, 1.0);
+  s.m.back() = stray_mass;
+  s.n_active = 13;
+  s.material.assign(13, 0);
   for (int i = 0; i < 13; ++i) s.id.push_back(i);
   return s;
 }
@@ -49,7 +55,8 @@ TEST(Fronts, TheLargestBodyIsTheHeaviest) {
 
 TEST(Energy, MomentumAndSpeeds) {
   Soil s = body_and_stray(2.0);
-  s.vx[0] = 3, s.vy[12] = -4;
+  s.vx[0] = 3;
+  s.vy[12] = -4;
   EXPECT_DOUBLE_EQ(kinetic_energy(s), 0.5 * 9 + 0.5 * 2 * 16);
   EXPECT_DOUBLE_EQ(max_speed(s), 4.0);
   EXPECT_DOUBLE_EQ(rms_speed(s), std::sqrt(2 * (4.5 + 16) / 14));
@@ -59,7 +66,10 @@ TEST(Digest, DependsOnTheStateNotOnTheOrder) {
   Soil s = body_and_stray(1.0);
   const std::string before = digest(s);
   EXPECT_EQ(before.size(), 16u);
-  std::swap(s.x[0], s.x[12]), std::swap(s.y[0], s.y[12]), std::swap(s.id[0], s.id[12]), std::swap(s.m[0], s.m[12]);
+  std::swap(s.x[0], s.x[12]);
+  std::swap(s.y[0], s.y[12]);
+  std::swap(s.id[0], s.id[12]);
+  std::swap(s.m[0], s.m[12]);
   EXPECT_EQ(digest(s), before);
   s.vx[3] = 1e-300;
   EXPECT_NE(digest(s), before);

@@ -25,7 +25,8 @@ void displace(Soil& soil, double way, unsigned seed) {
   std::uniform_real_distribution<double> angle(0.0, 2.0 * std::numbers::pi);
   for (std::size_t i = 0; i < soil.size(); ++i) {
     const double a = angle(engine);
-    soil.x[i] += way * std::cos(a), soil.y[i] += way * std::sin(a);
+    soil.x[i] += way * std::cos(a);
+    soil.y[i] += way * std::sin(a);
   }
 }
 
@@ -57,10 +58,16 @@ TEST(VectorisedFlow, EqualsThePlainLoopsAtWallsOfEveryKind) {
     for (const auto contact : {WallContact::always, WallContact::approaching})
       for (const auto kernel : {KernelShape::cubic_spline, KernelShape::wendland_c2}) {
         FlowConstants k = constants(0.1, {1.3, -9.81}, {{"a", 2000, 0.5, 700, 30}, {"b", 1900, 0.5, 100, 90}});
-        k.walls.slip = slip, k.walls.contact = contact, k.walls.phi = 0.1, k.numerics.kernel = kernel;
+        k.walls.slip = slip;
+        k.walls.contact = contact;
+        k.walls.phi = 0.1;
+        k.numerics.kernel = kernel;
         Soil soil = random_soil(30, 8, k.dx, 47, 2);
         WallParticles walls = flat_walls(30, k.dx);
-        for (std::size_t w = 0; w < walls.size(); ++w) walls.nx[w] = -0.28, walls.ny[w] = 0.96;  // sloping
+        for (std::size_t w = 0; w < walls.size(); ++w) {  // sloping
+          walls.nx[w] = -0.28;
+          walls.ny[w] = 0.96;
+        }
         const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
         Soil plain = soil;
         WallParticles plain_walls = walls;
@@ -110,11 +117,13 @@ TEST(VectorisedFlow, AWallThatSeesNextToNothingStaysFinite) {
   // A soil particle within rounding of 2h from the wall particle below it; another one far off changes the fixed
   // point's quantum, so that some of the many kernel values are tiny: none may give infinity.
   FlowConstants k = constants(0.1);
-  k.numerics.precision = Precision::single, k.numerics.kernel = KernelShape::wendland_c2;
+  k.numerics.precision = Precision::single;
+  k.numerics.kernel = KernelShape::wendland_c2;
   for (int m = 0; m < 3000; ++m)
     for (int n = -2; n <= 2; ++n) {
       Soil soil = random_soil(2, 1, k.dx, 5);
-      soil.x = {0.0, 3.0 + 1e-3 * m}, soil.y = {2 * k.h * (1 + 6e-8 * n) - k.dx, 1.0};
+      soil.x = {0.0, 3.0 + 1e-3 * m};
+      soil.y = {2 * k.h * (1 + 6e-8 * n) - k.dx, 1.0};
       WallParticles walls = flat_walls(1, k.dx);
       const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
       evaluate(k, soil, walls, soil_cells, wall_cells);
@@ -145,7 +154,8 @@ TEST(VectorisedFlow, FollowsParticlesThatChangePlaces) {
       EXPECT_EQ(moved[4], array[4]) << name;
     });
   };
-  for_each_rate(before, expect_moved), for_each_derived(before, expect_moved);
+  for_each_rate(before, expect_moved);
+  for_each_derived(before, expect_moved);
   // Rates follow a new order as well; the derived values are rewritten before they are read.
   std::vector<std::uint32_t> order(soil.size());
   std::iota(order.rbegin(), order.rend(), 0u);
