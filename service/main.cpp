@@ -79,7 +79,8 @@ int serve(Config config) {
       wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
                     "workers of an earlier talusd still run in " + data.root.string() + "; stop them first");
 
-  Store store(data.database(), system_now);
+  talus::service::Store store(data.database(), data.jobs(), system_now,
+                              std::chrono::duration_cast<std::chrono::milliseconds>(config.lease).count());
   Changes changes;
   Scheduler scheduler(config, store, changes);
   Jobs jobs(config, store, scheduler, changes);

@@ -63,7 +63,7 @@ Answer histogram(Exchange& exchange, Service& service) {
   return json_answer(answer);
 }
 
-Json measures_of(const RunResult& result) {
+Json measures_of(const Record& result) {
   Json all = Json::object();
   for (const Measure& measure : measure_table) all[measure.key] = result.measures.*measure.member;
   return all;
@@ -116,7 +116,7 @@ Run run_of(const Exchange& exchange, Service& service, const Job& job) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
   std::optional<Run> run;
   if (error == std::errc() && end == text.data() + text.size() && index >= 0)
-    run = service.store.run({job.number, false, index});
+    run = service.store.run(job.number, realization(index));
   if (!run) throw Refusal(Reason::not_found, "the study has no such realization");
   return *run;
 }
@@ -128,9 +128,9 @@ Answer one(Exchange& exchange, Service& service) {
   json["seed"] = job.seed;
   json["case_hash"] = job.case_hash;
   json["attempt"] = run.attempt;
-  json["command"] = replay_command(run.key, job.seed);
+  json["command"] = replay_command(run.key, static_cast<std::uint64_t>(job.seed), "case.resolved.json");
   if (run.result) {
-    json["mean_friction_angle_deg"] = run.result->mean_friction_angle_deg;
+    json["mean_friction_angle_deg"] = run.result->mean_phi_deg;
     json["steps"] = run.result->steps;
     json["wall_clock_s"] = run.result->wall_clock;
   }

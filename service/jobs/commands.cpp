@@ -60,26 +60,20 @@ Command Commands::validate(const std::filesystem::path& case_file) const {
   return quick({"validate", case_file.string(), "--json"});
 }
 
-Command Commands::prepare(const std::filesystem::path& case_file, const StudyDirectory& study,
-                          std::int64_t realizations, std::int64_t seed) const {
+Command Commands::prepare(const std::filesystem::path& case_file, const StudyPaths& study, std::int64_t realizations,
+                          std::int64_t seed) const {
   return quick({"study", case_file.string(), "--out", study.root.string(), "--realizations",
                 std::to_string(realizations), "--seed", std::to_string(seed), "--prepare"});
 }
 
-Command Commands::run(const StudyDirectory& study, const Claim& claim, double particles) const {
-  Command command{.arguments = {config_.program.string(), "run", study.resolved_case().string(), "--realization",
-                                std::to_string(claim.run.floor ? 0 : claim.run.index), "--seed",
-                                std::to_string(claim.seed), "--threads", std::to_string(config_.threads), "--out",
-                                study.work(claim.run).string(), "--study-worker"},
-                  .environment = environment(config_.threads),
-                  .limits = run_limits(particles),
-                  .niceness = config_.niceness};
-  if (claim.run.floor)
-    command.arguments.insert(command.arguments.end(), {"--perturbation", perturbation(claim.run.index)});
-  return command;
+Command Commands::run(const StudyInfo& study, const RunKey& key, double particles) const {
+  return {.arguments = run_arguments({config_.program.string(), "run"}, study, key, config_.threads),
+          .environment = environment(config_.threads),
+          .limits = run_limits(particles),
+          .niceness = config_.niceness};
 }
 
-Command Commands::replay(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
+Command Commands::replay(const StudyPaths& study, const RunKey& run, std::int64_t seed,
                          const std::filesystem::path& out) const {
   return heavy({"run", study.resolved_case().string(), "--realization", std::to_string(run.index), "--seed",
                 std::to_string(seed), "--threads", std::to_string(config_.threads), "--out", out.string(),
@@ -91,11 +85,7 @@ Command Commands::median(const std::filesystem::path& case_file, const std::file
                 out.string(), "--study-worker"});
 }
 
-Command Commands::stats(const StudyDirectory& study) const {
-  return quick({"stats", study.root.string(), "--from-runs"});
-}
-
-Command Commands::field(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
+Command Commands::field(const StudyPaths& study, const RunKey& run, std::int64_t seed,
                         const std::filesystem::path& out) const {
   return quick({"field", study.resolved_case().string(), "--realization", std::to_string(run.index), "--seed",
                 std::to_string(seed), "--out", out.string(), "--json"});

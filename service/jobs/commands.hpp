@@ -8,7 +8,7 @@
 
 #include "executor/process.hpp"
 #include "jobs/config.hpp"
-#include "jobs/study_directory.hpp"
+#include "study/engine.hpp"
 
 namespace talus::service {
 
@@ -21,18 +21,15 @@ class Commands {
 
   Command validate(const std::filesystem::path& case_file) const;
   /// Makes `study` the directory of a study, or a longer one.
-  Command prepare(const std::filesystem::path& case_file, const StudyDirectory& study, std::int64_t realizations,
+  Command prepare(const std::filesystem::path& case_file, const StudyPaths& study, std::int64_t realizations,
                   std::int64_t seed) const;
   /// @param particles  of the case: the memory limit follows from them
-  Command run(const StudyDirectory& study, const Claim& claim, double particles) const;
+  Command run(const StudyInfo& study, const RunKey& key, double particles) const;
   /// The same realization into another directory, with its snapshots.
-  Command replay(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
-                 const std::filesystem::path& out) const;
+  Command replay(const StudyPaths& study, const RunKey& run, std::int64_t seed, const std::filesystem::path& out) const;
   /// A run without random numbers, for UM-Bridge.
   Command median(const std::filesystem::path& case_file, const std::filesystem::path& out) const;
-  Command stats(const StudyDirectory& study) const;
-  Command field(const StudyDirectory& study, const RunKey& run, std::int64_t seed,
-                const std::filesystem::path& out) const;
+  Command field(const StudyPaths& study, const RunKey& run, std::int64_t seed, const std::filesystem::path& out) const;
   /// @param out  ends in .json or .svg
   Command profile(const std::filesystem::path& run_directory, const std::filesystem::path& out) const;
 

@@ -77,7 +77,7 @@ Jobs::Jobs(const Config& config, Store& store, Scheduler& scheduler, Changes& ch
       commands_(config),
       heavy_(config.workers) {}
 
-Outcome Jobs::run(const Command& command, std::chrono::milliseconds limit, bool heavy) {
+CommandOutput Jobs::run(const Command& command, std::chrono::milliseconds limit, bool heavy) {
   const auto patience = heavy ? seconds(60) : seconds(20);
   if (!(heavy ? heavy_.try_acquire_for(patience) : quick_.try_acquire_for(patience))) {
     Refusal busy(Reason::unavailable, "too many requests of this kind at once");
@@ -89,7 +89,7 @@ Outcome Jobs::run(const Command& command, std::chrono::milliseconds limit, bool 
     bool heavy;
     ~Releaser() { heavy ? jobs.heavy_.release() : jobs.quick_.release(); }
   } const releaser{*this, heavy};
-  Outcome outcome = run_to_end(command, data_.scratch(), limit, [this] { return stopping_.load(); });
+  CommandOutput outcome = run_to_end(command, data_.scratch(), limit, [this] { return stopping_.load(); });
   if (stopping_) throw Refusal(Reason::unavailable, "talusd is stopping");
   if (outcome.timed_out)
     throw Refusal(Reason::timeout, "this takes longer than " + std::to_string(limit.count() / 1000) + " s");
@@ -105,7 +105,7 @@ Outcome Jobs::run(const Command& command, std::chrono::milliseconds limit, bool 
   return outcome;
 }
 
-void Jobs::refuse_case(const Outcome& outcome, const std::string& pointer) const {
+void Jobs::refuse_case(const CommandOutput& outcome, const std::string& pointer) const {
   std::vector<Fault> faults;
   const Json said = Json::parse(outcome.out, nullptr, false);
   if (said.is_object() && said.contains("faults"))
@@ -125,7 +125,7 @@ void Jobs::refuse_case(const Outcome& outcome, const std::string& pointer) const
 Json Jobs::validate(const Json& document, const std::string& pointer) {
   const NewDirectory scratch(data_.scratch() / ("case-" + random_hex(8)));
   write_file_atomically(scratch.path() / "case.json", dump(document));
-  const Outcome outcome = run(commands_.validate(scratch.path() / "case.json"), seconds(60));
+  const CommandOutput outcome = run(commands_.validate(scratch.path() / "case.json"), seconds(60));
   if (outcome.end.signal || outcome.end.exit_code != 0) refuse_case(outcome, pointer);
   Json demand = Json::parse(outcome.out, nullptr, false);
   if (demand.is_discarded()) throw Refusal(Reason::unavailable, "the case could not be checked; try again");
@@ -176,7 +176,7 @@ std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& in
 
   NewJob job{.id = random_hex(16), .process = "influence-zone", .subject = subject};
   NewDirectory made(data_.unfinished(job.id));
-  const StudyDirectory directory{made.path()};
+  const StudyPaths directory{made.path()};
   const fs::path scratch = data_.scratch() / (job.id + ".json");
   write_file_atomically(scratch, dump(study.document));
   const Json& options = study.document.at("study");
@@ -186,7 +186,7 @@ std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& in
   job.particles = demand.at("particles").at("soil").get<double>() + demand.at("particles").at("wall").get<double>();
   job.steps = demand.at("steps").get<double>();
   check_size(job.particles, job.steps, job.planned);
-  const Outcome prepared = run(commands_.prepare(scratch, directory, job.planned, job.seed), seconds(60));
+  const CommandOutput prepared = run(commands_.prepare(scratch, directory, job.planned, job.seed), seconds(60));
   fs::remove(scratch);
   if (prepared.end.signal || prepared.end.exit_code != 0) refuse_case(prepared, "/inputs/case");
 
@@ -220,7 +220,7 @@ std::optional<Job> Jobs::submit_echo(const std::string& subject, const Json& inp
 
 void Jobs::dismiss(const Job& job) {
   store_.dismiss(job.number);
-  scheduler_.wake(true);
+  scheduler_.wake(job.number);
   changes_.announce();
 }
 
@@ -229,7 +229,7 @@ std::int64_t Jobs::retry(const Job& job, const Store::Answer& answer) {
     throw Refusal(Reason::conflict, "this job has no realizations");
   if (ended(job.state)) check_queue(job.subject);  // it will be open again
   const std::int64_t retried = store_.retry_failed(job.number, answer);
-  scheduler_.wake();
+  scheduler_.wake(job.number);
   changes_.announce();
   return retried;
 }
@@ -242,12 +242,13 @@ bool Jobs::extend(const Job& job, std::int64_t more, const Store::Answer& answer
   const std::int64_t planned = store_.job(job.id)->planned + more;
   ended(job.state) ? check_queue(job.subject) : check_disk();  // an ended one will be open again
   check_size(job.particles, job.steps, planned, "/realizations");
-  const StudyDirectory directory{data_.job(job.id)};
-  const Outcome prepared = run(commands_.prepare(directory.resolved_case(), directory, planned, job.seed), seconds(60));
+  const StudyPaths directory{data_.job(job.id)};
+  const CommandOutput prepared =
+      run(commands_.prepare(directory.resolved_case(), directory, planned, job.seed), seconds(60));
   if (prepared.end.signal || prepared.end.exit_code != 0)
     throw Refusal(Reason::conflict, prepared.err.empty() ? "the study cannot be extended" : prepared.err);
   const bool fresh = store_.extend(job.number, planned, answer);
-  scheduler_.wake();
+  scheduler_.wake(job.number);
   changes_.announce();
   return fresh;
 }

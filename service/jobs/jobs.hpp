@@ -55,8 +55,8 @@ class Jobs {
   /// @param only_at  where every fault is; otherwise where the inputs of a submission say it
   void check_size(double particles, double steps, std::int64_t realizations, const std::string& only_at = "") const;
   void check_queue(const std::string& subject) const;
-  Outcome run(const Command& command, std::chrono::milliseconds limit, bool heavy = false);
-  [[noreturn]] void refuse_case(const Outcome& outcome, const std::string& pointer) const;
+  CommandOutput run(const Command& command, std::chrono::milliseconds limit, bool heavy = false);
+  [[noreturn]] void refuse_case(const CommandOutput& outcome, const std::string& pointer) const;
 
   const Config& config_;
   DataDirectory data_;

@@ -18,16 +18,17 @@ constexpr milliseconds behind{1000};       ///< that the histogram of a running 
 constexpr std::size_t profiles_kept = 16;  ///< of a job
 constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
-/// Removes all but the newest few files.
+/// Removes all but the newest few profiles that were asked for; those that the study keeps itself stay.
 void prune(const fs::path& directory, std::size_t keep) {
   std::vector<std::pair<fs::file_time_type, fs::path>> files;
-  for (const auto& entry : fs::directory_iterator(directory)) files.emplace_back(entry.last_write_time(), entry.path());
+  for (const auto& entry : fs::directory_iterator(directory))
+    if (run_of_work_name(entry.path().stem().string())) files.emplace_back(entry.last_write_time(), entry.path());
   std::sort(files.rbegin(), files.rend());
   std::error_code ignored;
   for (std::size_t i = keep; i < files.size(); ++i) fs::remove(files[i].second, ignored);
 }
 
-[[noreturn]] void broke(const Outcome& outcome, const char* what) {
+[[noreturn]] void broke(const CommandOutput& outcome, const char* what) {
   log_error("talus_broke",
             {{"exit_code", outcome.end.exit_code}, {"signal", outcome.end.signal}, {"said", outcome.err}});
   throw Refusal(Reason::internal, std::string(what) + " could not be made");
@@ -71,7 +72,7 @@ Json Jobs::distribution(const Job& job, const Measure& quantity, const Bins& bin
 }
 
 Json Jobs::summary(const Job& job) const {
-  const auto text = find_file(StudyDirectory{data_.job(job.id)}.summary(), max_bytes);
+  const auto text = find_file(StudyPaths{data_.job(job.id)}.summary(), max_bytes);
   if (!text) throw Refusal(Reason::result_not_ready, "there are no statistics of this job");
   return Json::parse(*text);
 }
@@ -79,8 +80,8 @@ Json Jobs::summary(const Job& job) const {
 std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
   const Scratch scratch(data_.scratch());
   const fs::path file = scratch.path / (svg ? "field.svg" : "field.csv");
-  const RunKey run_key{job.number, false, index};
-  const Outcome outcome = run(commands_.field({data_.job(job.id)}, run_key, job.seed, file), seconds(60));
+  const CommandOutput outcome =
+      run(commands_.field({data_.job(job.id)}, realization(index), job.seed, file), seconds(60));
   if (outcome.end.signal || outcome.end.exit_code != 0) broke(outcome, "the field");
   const std::string text = find_file(file, max_bytes).value_or("");
   if (svg) return text;
@@ -104,17 +105,17 @@ std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
 }
 
 std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
-  const StudyDirectory study{data_.job(job.id)};
+  const StudyPaths study{data_.job(job.id)};
   fs::create_directories(study.profiles());
   const fs::path kept = study.profiles() / (std::to_string(index) + (svg ? ".svg" : ".json"));
   if (auto text = find_file(kept, max_bytes)) return *text;
   const Scratch scratch(data_.scratch());
   const fs::path out = scratch.path / "run";
-  const Outcome again = run(commands_.replay(study, {job.number, false, index}, job.seed, out), seconds(3600), true);
+  const CommandOutput again = run(commands_.replay(study, realization(index), job.seed, out), seconds(3600), true);
   if (again.end.signal || again.end.exit_code != 0) broke(again, "the profile");
   const fs::path json = scratch.path / "profile.json", picture = scratch.path / "profile.svg";
   const fs::path& wanted = svg ? picture : json;
-  const Outcome made = run(commands_.profile(out, wanted), seconds(60));
+  const CommandOutput made = run(commands_.profile(out, wanted), seconds(60));
   if (made.end.signal || made.end.exit_code != 0) broke(made, "the profile");
   const std::string text = find_file(wanted, max_bytes).value_or("");
   write_file_atomically(kept, text);
@@ -128,7 +129,7 @@ Json Jobs::evaluate(const Json& document) {
   check_size(count, demand.at("steps").get<double>(), 1);
   const Scratch scratch(data_.scratch());
   write_file_atomically(scratch.path / "case.json", dump(document));
-  const Outcome outcome =
+  const CommandOutput outcome =
       run(commands_.median(scratch.path / "case.json", scratch.path / "run"), config_.time_limit, true);
   if (outcome.end.exit_code == 3 && !outcome.end.signal) throw Refusal(Reason::bad_request, outcome.err);
   const auto text = find_file(scratch.path / "run" / "result.json", 1 << 20);

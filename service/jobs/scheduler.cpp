@@ -1,13 +1,14 @@
 #include "jobs/scheduler.hpp"
 
-#include <signal.h>
-
 #include <algorithm>
 
 #include "base/log.hpp"
 #include "executor/local.hpp"
 #include "executor/slurm.hpp"
+#include "jobs/statistics.hpp"
+#include "study/estimator.hpp"
 #include "support/files.hpp"
+#include "support/text.hpp"
 
 namespace talus::service {
 namespace {
@@ -18,7 +19,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds poll_interval{10};
 constexpr milliseconds idle_interval{500};
 constexpr milliseconds trouble_interval{1000};
-constexpr milliseconds interim_interval{2000};
+constexpr milliseconds reasons_interval{2000};
 constexpr milliseconds removal_interval{5000};                   ///< until what could not be removed is tried again
 constexpr std::uint64_t crowded_bytes = std::uint64_t{8} << 20;  ///< a run that cannot write then is not to blame
 
@@ -46,35 +47,83 @@ Scheduler::Scheduler(const Config& config, Store& store, Changes& changes)
       store_(store),
       changes_(changes),
       commands_(config),
-      lease_(std::chrono::duration_cast<milliseconds>(config.lease).count()),
-      executor_(make_executor(config)) {}
+      engine_(store, make_executor(config), engine_options()) {}
 
 Scheduler::~Scheduler() { drain(); }
 
+EngineOptions Scheduler::engine_options() {
+  return {.attempts = config_.attempts,
+          .command = [this](const StudyInfo& study,
+                            const RunKey& key) { return commands_.run(study, key, store_.job(study.name)->particles); },
+          .room_on_disk = [this] { return room_on_disk(); },
+          .report = [this](const RunEvent& event) { count(event); }};
+}
+
+void Scheduler::count(const RunEvent& event) {
+  using Kind = RunEvent::Kind;
+  const auto log = [&](const char* what) {
+    if (event.reason.empty()) return;
+    log_info(what, {{"job", event.study.name},
+                    {"run", event.claim.key.index},
+                    {"floor", event.claim.key.is_replicate()},
+                    {"attempt", event.claim.attempt},
+                    {"why", event.reason}});
+  };
+  switch (event.kind) {
+    case Kind::done:
+      done_.wall_clock_ms += static_cast<std::int64_t>(1000.0 * event.wall_clock);
+      [[fallthrough]];
+    case Kind::taken_over:
+      ++done_.done;
+      break;
+    case Kind::failed:
+      ++done_.failed;
+      log("run_failed");
+      break;
+    case Kind::crashed:
+      ++done_.crashed;
+      log("run_again");
+      break;
+    case Kind::given_back:
+      ++done_.given_back;
+      log("run_again");
+      break;
+    case Kind::stale:
+      ++done_.stale;
+      break;
+  }
+  changes_.announce();
+}
+
 void Scheduler::start() {
   put_orphans_aside();
-  const std::vector<Claim> held = store_.requeue_all();
-  if (!held.empty()) log_info("requeued", {{"runs", held.size()}, {"why", "an earlier talusd held them"}});
+  const std::int64_t requeued = store_.requeue_all();
+  if (requeued > 0) log_info("requeued", {{"runs", requeued}, {"why", "an earlier talusd held them"}});
   thread_ = std::thread([this] { loop(); });
 }
 
-void Scheduler::wake(bool dismissed) {
+void Scheduler::wake(std::optional<std::int64_t> job) {
   {
     const std::lock_guard lock(mutex_);
     woken_ = true;
-    dismissed_ |= dismissed;
+    if (job) changed_.insert(*job);
   }
   wake_.notify_one();
 }
 
 void Scheduler::wait_for(milliseconds most) {
-  std::unique_lock lock(mutex_);
-  wake_.wait_for(lock, most, [&] { return woken_ || draining_; });
-  if (!woken_) return;
-  woken_ = false;
-  look_ = true;
-  next_beat_ = {};
-  removing_ |= std::exchange(dismissed_, false);
+  std::set<StudyNumber> changed;
+  {
+    std::unique_lock lock(mutex_);
+    wake_.wait_for(lock, most, [&] { return woken_ || draining_; });
+    if (!woken_) return;
+    woken_ = false;
+    changed.swap(changed_);
+  }
+  for (const StudyNumber job : changed) engine_.forget(job);
+  removing_ |= !changed.empty();
+  read_queue_ = true;
+  next_renewal_ = {};
 }
 
 void Scheduler::loop() {
@@ -83,181 +132,99 @@ void Scheduler::loop() {
       tick();
       if (told_trouble_) log_info("going_on");
       told_trouble_ = false;
-      const bool busy = !workers_.empty() || !publishers_.empty() || echo_waiting_;
-      wait_for(busy ? poll_interval : idle_interval);
+      wait_for(engine_.running() > 0 || echo_waiting_ ? poll_interval : idle_interval);
     } catch (const std::exception& e) {
-      // A full disk or a database that cannot be written: workers go on, and what they did is recorded once it can be.
+      // A full disk or a database that cannot be written: runs go on, and how they end is recorded once it can be.
       if (!told_trouble_) log_error("scheduler_waits", {{"why", e.what()}});
       told_trouble_ = true;
-      look_ = true;
+      read_queue_ = true;
       std::this_thread::sleep_for(trouble_interval);
     }
   }
-  end_workers();
+  end_runs();
 }
 
 void Scheduler::tick() {
-  reap();
-  if (Steady::now() >= next_beat_) beat();
+  read_queue_ |= engine_.record_ended();
+  done_.running = static_cast<int>(engine_.running());
+  if (Steady::now() >= next_renewal_) {
+    engine_.renew_claims();
+    read_queue_ = true;
+    next_renewal_ = Steady::now() + config_.lease / 6;
+  }
   run_echo();
   if (removing_ && Steady::now() >= next_removal_) remove_dismissed();
-  if (look_) {
-    look_ = false;
-    fill();
-    publish_complete();
-  }
-  if (Steady::now() < next_interim_) return;
-  next_interim_ = Steady::now() + interim_interval;
-  publish_interim();
-  note_waits();
-}
-
-/// Renews the leases of what runs, ends what has lost its own, and puts back what nobody holds.
-void Scheduler::beat() {
-  std::vector<Claim> claims;
-  std::vector<executor::RunId> holders;
-  for (const auto& [id, worker] : workers_) {
-    claims.push_back(worker.claim);
-    holders.push_back(id);
-  }
-  for (const std::size_t i : store_.beat(claims, lease_).lost) {
-    workers_.at(holders[i]).lost = true;
-    executor_->kill(holders[i]);
-  }
-  look_ = true;
-  next_beat_ = Steady::now() + config_.lease / 6;
-}
-
-void Scheduler::reap() {
-  for (const executor::Ended& how : executor_->poll()) workers_.at(how.id).how = how;
-  for (auto worker = workers_.begin(); worker != workers_.end();) {
-    if (!worker->second.how) {
-      ++worker;
-      continue;
-    }
-    settle(worker->second);  // if it throws, the worker stays and is settled later
-    worker = workers_.erase(worker);
-    done_.running = static_cast<int>(workers_.size());
-    look_ = true;
+  if (read_queue_) {
+    engine_.start_runs();
+    done_.running = static_cast<int>(engine_.running());
+    finish_complete();
+    read_queue_ = false;
     changes_.announce();
   }
-  reap_publishers();
+  if (Steady::now() < next_reasons_) return;
+  next_reasons_ = Steady::now() + reasons_interval;
+  note_pending_reasons();
 }
 
-void Scheduler::reap_publishers() {
-  for (auto publisher = publishers_.begin(); publisher != publishers_.end();) {
-    const std::optional<executor::ProcessEnd> end = publisher->process.poll();
-    if (!end) {
-      if (Steady::now() > publisher->deadline) publisher->process.signal(SIGKILL);
-      ++publisher;
-      continue;
-    }
-    settle_publisher(*publisher, *end);
-    publisher = publishers_.erase(publisher);
-    changes_.announce();
-  }
-}
-
-bool Scheduler::room_on_disk() {
+bool Scheduler::room_on_disk() const {
   return disk_left(config_.data) >= std::max(config_.quotas.disk_bytes / 2, crowded_bytes);
 }
 
-/// Starts runs while there are free places, room on the disk and work.
-void Scheduler::fill() {
-  while (executor_->has_room()) {
-    if (!room_on_disk())
-      throw std::runtime_error("less disk is left than half of --min-disk, or 8 MiB: no run is started");
-    const std::optional<Claim> claim = store_.claim(lease_);
-    if (!claim) return;
-    try {
-      start_worker(*claim);
-    } catch (...) {
-      store_.give_back(*claim, false);
-      throw;
-    }
-    changes_.announce();
-  }
-}
-
-/// A result that was finished before talusd was killed counts.
-bool Scheduler::adopt(const Claim& claim, const StudyDirectory& study, const Job& job) {
-  const fs::path place = study.result(claim.run), left = study.work(claim.run) / "result.json";
-  if (const auto result = read_result(place, claim.run, claim.seed, job.case_hash))
-    return store_.accept(claim, *result);
-  const auto result = read_result(left, claim.run, claim.seed, job.case_hash);
-  if (!result) return false;
-  rename_durably(left, place);
-  const bool accepted = store_.accept(claim, *result);
-  clear_work(study, claim.run);
-  return accepted;
-}
-
-void Scheduler::start_worker(const Claim& claim) {
-  const std::optional<Job> job = job_of(claim);
-  const StudyDirectory directory = study(claim.job_id);
-  for (const char* name : {"runs", "floor", "work", "profiles"}) fs::create_directories(directory.root / name);
-  if (adopt(claim, directory, *job)) {
-    ++done_.done;
-    look_ = true;
-    return;
-  }
-  const fs::path work = directory.work(claim.run);
-  const executor::RunId id = executor_->start({.name = claim.job_id + "/" + work.filename().string(),
-                                               .group = claim.job_id,
-                                               .command = commands_.run(directory, claim, job->particles),
-                                               .directory = work,
-                                               .log = directory.log(claim.run)});
-  workers_.emplace(id, Worker{.claim = claim, .study = directory});
-  done_.running = static_cast<int>(workers_.size());
-}
-
 /// The statistics of jobs whose runs have all ended.
-void Scheduler::publish_complete() {
+void Scheduler::finish_complete() {
   for (const Job& job : store_.complete_jobs()) {
-    const bool under_way = std::any_of(publishers_.begin(), publishers_.end(),
-                                       [&](const Publisher& p) { return p.job.number == job.number; });
-    if (!under_way) start_publisher(job, false);
-  }
-}
-
-std::set<std::string> Scheduler::jobs_at_work() const {
-  std::set<std::string> ids;
-  for (const auto& [id, worker] : workers_) ids.insert(worker.claim.job_id);
-  return ids;
-}
-
-/// Jobs that the executor cannot go on with say why.
-void Scheduler::note_waits() {
-  const std::set<std::string> at_work = jobs_at_work();
-  std::set<std::string> concerned = at_work;
-  concerned.merge(std::exchange(waiting_, {}));  // those that said so and have nothing at work any more
-  for (const std::string& id : concerned) {
-    const std::string why = at_work.contains(id) ? executor_->waits(id) : "";
-    if (!why.empty()) waiting_.insert(id);
-    const std::optional<Job> job = store_.job(id);
-    if (!job || ended(job->state) || job->message == why) continue;
-    store_.note_waits(job->number, why);
-    if (!why.empty()) log_info("waits", {{"job", id}, {"why", why}});
+    try {
+      finish(job);
+    } catch (const IoError& e) {
+      log_error("no_statistics", {{"job", job.id}, {"why", e.what()}});
+      if (!room_on_disk()) throw;  // tried again when there is room
+      store_.finish(job.number, JobState::failed, std::string("the statistics cannot be written: ") + e.what());
+    }
+    engine_.forget(job.number);
     changes_.announce();
   }
 }
 
-/// Looks whether a study that may stop early may do so.
-void Scheduler::publish_interim() {
-  for (const std::string& id : jobs_at_work()) {
-    const std::optional<Job> job = store_.job(id);
-    if (!job || !job->may_stop_early || ended(job->state) || interim_published_[job->number] == job->done) continue;
-    const bool under_way = std::any_of(publishers_.begin(), publishers_.end(),
-                                       [&](const Publisher& p) { return p.job.number == job->number; });
-    if (under_way) continue;
-    interim_published_[job->number] = job->done;
-    start_publisher(*job, true);
+void Scheduler::finish(const Job& job) {
+  const StudyPaths paths{data_.job(job.id)};
+  std::optional<Plan> plan = find_plan(paths.root);
+  if (!plan) throw IoError("there is no plan.json in " + paths.root.string());
+  plan->study.realizations = job.planned;
+  const StudySummary summary = publish_study(store_, job, *plan, paths);
+  const bool too_many = too_many_failed(summary.failed(), summary.done(), job.planned, job.max_failed_share);
+  std::string message = std::to_string(summary.done()) + " realizations done";
+  if (summary.failed() > 0) message += ", " + std::to_string(summary.failed()) + " failed";
+  if (too_many) message += ": more than max_failed_share = " + to_text(job.max_failed_share) + " of those planned";
+  if (summary.stopped_early()) message += "; stopped early, the mean is known well enough";
+  if (!store_.finish(job.number, too_many ? JobState::failed : JobState::successful, message)) return;
+  log_info("job_ended", {{"job", job.id},
+                         {"state", too_many ? "failed" : "successful"},
+                         {"done", summary.done()},
+                         {"failed", summary.failed()}});
+  std::error_code ignored;
+  fs::remove_all(paths.work(), ignored);
+}
+
+/// Jobs of which the executor runs nothing say why.
+void Scheduler::note_pending_reasons() {
+  const std::set<StudyNumber> running = engine_.studies_running();
+  std::set<StudyNumber> concerned = running;
+  concerned.merge(std::exchange(pending_, {}));  // those that said so and have nothing at work any more
+  for (const StudyNumber number : concerned) {
+    const std::optional<Job> job = store_.job(number);
+    if (!job || ended(job->state)) continue;
+    const std::string why = running.contains(number) ? engine_.executor().pending_reason(job->id) : "";
+    if (!why.empty()) pending_.insert(number);
+    if (job->message == why) continue;
+    store_.note_waits(job->number, why);
+    if (!why.empty()) log_info("waits", {{"job", job->id}, {"why", why}});
+    changes_.announce();
   }
 }
 
 /// Echo does nothing but wait.
 void Scheduler::run_echo() {
-  if (!echo_waiting_ && !look_) return;
+  if (!echo_waiting_ && !read_queue_) return;
   const std::vector<Job> waiting = store_.waiting_jobs("echo");
   echo_waiting_ = !waiting.empty();
   for (const Job& job : waiting) {
@@ -278,13 +245,12 @@ void Scheduler::run_echo() {
 void Scheduler::remove_dismissed() {
   removing_ = false;
   const std::set<std::string> dismissed = store_.dismissed_ids();
+  std::set<std::string> at_work;
+  for (const StudyNumber number : engine_.studies_running()) at_work.insert(store_.job(number)->id);
   for (const auto& entry : fs::directory_iterator(data_.jobs())) {
-    if (!dismissed.contains(entry.path().filename().string())) continue;
-    const bool works = std::any_of(workers_.begin(), workers_.end(),
-                                   [&](const auto& worker) { return worker.second.study.root == entry.path(); });
-    const bool publishes = std::any_of(publishers_.begin(), publishers_.end(),
-                                       [&](const Publisher& p) { return p.study.root == entry.path(); });
-    if (works || publishes) {
+    const std::string id = entry.path().filename().string();
+    if (!dismissed.contains(id)) continue;
+    if (at_work.contains(id)) {
       removing_ = true;
     } else if (!removed(entry.path())) {
       removing_ = true;
@@ -327,29 +293,21 @@ void Scheduler::drain() {
 }
 
 /// In the scheduler's own thread: local runs ask the kernel to kill them when the thread that started them ends.
-void Scheduler::end_workers() {
-  const bool leave = executor_->survives_us();  // the next talusd takes them over
+void Scheduler::end_runs() {
+  const bool leave = engine_.executor().outlives_this_process();  // the next talusd takes them over
   const Steady::time_point end = Steady::now() + config_.grace;
-  log_info("draining", {{"workers", workers_.size()}, {"grace_s", leave ? 0 : config_.grace.count()}});
-  if (!leave) executor_->stop_all();
-  while (!leave && !workers_.empty() && Steady::now() < end) {
+  log_info("draining", {{"workers", engine_.running()}, {"grace_s", leave ? 0 : config_.grace.count()}});
+  if (!leave) engine_.stop();
+  while (!leave && engine_.running() > 0 && Steady::now() < end) {
     try {
-      reap();
+      engine_.record_ended();
     } catch (const std::exception& e) {
       log_error("drain", {{"why", e.what()}});
       std::this_thread::sleep_for(trouble_interval);
     }
     std::this_thread::sleep_for(poll_interval);
   }
-  for (const auto& [id, worker] : workers_) {
-    try {
-      store_.give_back(worker.claim, false);
-    } catch (const std::exception&) {  // the next talusd puts it back
-    }
-  }
-  workers_.clear();
-  publishers_.clear();
-  executor_.reset();
+  engine_.close();
 }
 
 }  // namespace talus::service

@@ -25,8 +25,8 @@ executor::Process started(const executor::Command& command, const fs::path& out,
 
 }  // namespace
 
-Outcome run_to_end(const executor::Command& command, const fs::path& scratch, std::chrono::milliseconds limit,
-                   const std::function<bool()>& give_up) {
+CommandOutput run_to_end(const executor::Command& command, const fs::path& scratch, std::chrono::milliseconds limit,
+                         const std::function<bool()>& give_up) {
   static std::atomic<unsigned> counter{0};
   const fs::path stem = scratch / ("command-" + std::to_string(::getpid()) + "-" + std::to_string(counter++));
   const fs::path out = stem.string() + ".out", err = stem.string() + ".err";
@@ -35,7 +35,7 @@ Outcome run_to_end(const executor::Command& command, const fs::path& scratch, st
     ~Remover() { ::unlink(a.c_str()), ::unlink(b.c_str()); }
   } const remover{out, err};
 
-  Outcome outcome;
+  CommandOutput outcome;
   executor::Process child = started(command, out, err);
   const auto deadline = std::chrono::steady_clock::now() + limit;
   std::chrono::milliseconds nap{1};

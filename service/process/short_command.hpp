@@ -11,7 +11,7 @@
 namespace talus::service {
 
 /// What a short command said.
-struct Outcome {
+struct CommandOutput {
   executor::ProcessEnd end;
   bool timed_out = false;
   std::string out;
@@ -21,7 +21,7 @@ struct Outcome {
 /// Runs a command to its end, its output through files in `scratch`. It is killed after `limit`, or when `give_up` says
 /// so.
 /// @throws IoError
-Outcome run_to_end(const executor::Command& command, const std::filesystem::path& scratch,
-                   std::chrono::milliseconds limit, const std::function<bool()>& give_up = {});
+CommandOutput run_to_end(const executor::Command& command, const std::filesystem::path& scratch,
+                         std::chrono::milliseconds limit, const std::function<bool()>& give_up = {});
 
 }  // namespace talus::service

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "study/record.hpp"
 #include "support/measures.hpp"
 
 namespace talus::service {
@@ -50,46 +51,13 @@ struct Job : NewJob {
   std::int64_t version = 1;           ///< counts the changes
 };
 
-/// A run of a job: a realization, or a replicate (k = 1, 2, ...) of realization 0 for the noise floor.
-struct RunKey {
-  std::int64_t job = 0;  ///< Job::number
-  bool floor = false;
-  std::int64_t index = 0;
-  bool operator==(const RunKey&) const = default;
-};
-
-/// A run handed to a worker. Only who holds the current attempt may say how it ended.
-struct Claim {
-  RunKey run;
-  std::string job_id;
-  std::int64_t seed = 0;
-  std::int64_t attempt = 1;  ///< grows with every claim
-  std::int64_t crashes = 0;  ///< attempts that ended by themselves without a result
-};
-
-/// What a finished run says of itself.
-struct RunResult {
-  Measures measures;
-  double mean_friction_angle_deg = 0.0;
-  std::optional<double> captured_variance = {};  ///< [-]; unset in runs of before it was kept
-  std::int64_t steps = 0;
-  double wall_clock = 0.0;  ///< [s]
-  std::string digest;
-};
-
-/// Why a run failed.
-struct RunFailure {
-  std::string reason;  ///< one line
-  std::optional<int> exit_code = {}, signal = {};
-  std::string log_tail = {};
-};
-
 struct Run {
+  std::int64_t job = 0;  ///< Job::number
   RunKey key;
   RunState state = RunState::queued;
   std::int64_t attempt = 0, crashes = 0;
-  std::optional<RunResult> result = {};
-  std::optional<RunFailure> failure = {};
+  std::optional<Record> result = {};
+  std::optional<Failure> failure = {};
 };
 
 /// Which jobs to list, newest first.

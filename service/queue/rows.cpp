@@ -42,28 +42,29 @@ Job job_of(SQLite::Statement& row) {
   return job;
 }
 
+RunKind kind_of(const SQLite::Column& floor) { return floor.getInt() != 0 ? RunKind::replicate : RunKind::realization; }
+
 Run run_of(SQLite::Statement& row) {
   Run run;
   int i = 0;
-  run.key.job = row.getColumn(i++).getInt64();
-  run.key.floor = row.getColumn(i++).getInt() != 0;
+  run.job = row.getColumn(i++).getInt64();
+  run.key.kind = kind_of(row.getColumn(i++));
   run.key.index = row.getColumn(i++).getInt64();
   run.state = run_state(row.getColumn(i++).getString()).value();
   run.attempt = row.getColumn(i++).getInt64();
   run.crashes = row.getColumn(i++).getInt64();
   if (run.state == RunState::done) {
-    RunResult result;
+    Record result{.index = run.key.index, .done = true};
     for (const Measure& measure : measure_table) result.measures.*measure.member = row.getColumn(i++).getDouble();
-    result.mean_friction_angle_deg = row.getColumn(i++).getDouble();
-    const SQLite::Column share = row.getColumn(i++);
-    if (!share.isNull()) result.captured_variance = share.getDouble();
+    result.mean_phi_deg = row.getColumn(i++).getDouble();
+    result.captured_variance = row.getColumn(i++).getDouble();
     result.steps = row.getColumn(i++).getInt64();
     result.wall_clock = row.getColumn(i++).getDouble();
     result.digest = row.getColumn(i++).getString();
     run.result = std::move(result);
   } else if (run.state == RunState::failed) {
     i += static_cast<int>(measure_table.size()) + 5;
-    RunFailure failure;
+    Failure failure;
     failure.reason = row.getColumn(i++).getString();
     failure.exit_code = small(row.getColumn(i++));
     failure.signal = small(row.getColumn(i++));

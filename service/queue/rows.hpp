@@ -22,6 +22,8 @@ inline const std::string run_columns = [] {
 
 Job job_of(SQLite::Statement& row);
 Run run_of(SQLite::Statement& row);
+/// The kind of a run from its column `floor` (0, 1).
+RunKind kind_of(const SQLite::Column& floor);
 std::vector<Job> all_jobs(SQLite::Statement& query);
 
 /// Says that a job has changed.

@@ -12,14 +12,19 @@
 #include "queue/database.hpp"
 #include "queue/records.hpp"
 #include "study/record.hpp"
+#include "study/store.hpp"
 #include "study/summary.hpp"
 
 namespace talus::service {
 
-class Store {
+/// Thread-safe.
+class Store final : public talus::Store {
  public:
+  /// @param jobs   where the directories of the jobs are
+  /// @param lease  how long a claim holds without being renewed
   /// @throws StorageError
-  Store(const std::filesystem::path& path, Clock clock) : db_(path), clock_(std::move(clock)) {}
+  Store(const std::filesystem::path& path, std::filesystem::path jobs, Clock clock, Milliseconds lease)
+      : db_(path), jobs_(std::move(jobs)), clock_(std::move(clock)), lease_(lease) {}
 
   // --- jobs
   // -----------------------------------------------------------------------------------------------------------
@@ -30,6 +35,7 @@ class Store {
   using Answer = std::function<Remembered(const Job&)>;
   std::optional<Job> create(const NewJob& job, const Answer& answer = {});
   std::optional<Job> job(const std::string& id);
+  std::optional<Job> job(std::int64_t number);
   std::vector<Job> jobs(const JobFilter& filter);
   /// Jobs that are accepted or running, of one subject or of all.
   std::int64_t open_jobs(const std::optional<std::string>& subject);
@@ -49,31 +55,33 @@ class Store {
   /// Adds realizations up to `planned` in all, unless the job has been dismissed. @return false where the key has been
   /// used meanwhile
   bool extend(std::int64_t job, std::int64_t planned, const Answer& answer = {});
-  /// Ends the claiming of a job whose statistics are good enough: its queued realizations are dropped, the leased ones
-  /// lose their lease.
-  void stop_early(std::int64_t job);
-
   std::optional<Remembered> remembered(const std::string& subject, const std::string& key);
 
-  // --- runs, for the scheduler
+  // --- runs, for the engine
   // ----------------------------------------------------------------------------------------
 
   /// Leases the next run: of the open job with the fewest runs under way; of equals, the one served longest ago.
-  std::optional<Claim> claim(Milliseconds lease);
-  struct Beat {
+  std::optional<Claim> claim() override;
+  StudyInfo study(StudyNumber number) override;
+  void visit_records(StudyNumber number, const Visitor& visit) override;
+  bool is_current(const Claim& claim) override;
+  bool accept(const Claim& claim, const Record& record) override;
+  bool fail(const Claim& claim, const Failure& failure) override;
+  bool give_back(const Claim& claim, bool crashed) override;
+  std::vector<std::size_t> renew(std::span<const Claim> held) override { return renew_leases(held).lost; }
+  void drop_open_runs(StudyNumber number, bool replicates_too) override;
+  void abort(StudyNumber number, bool bad_case, const std::string& why) override;
+
+  struct Renewal {
     std::vector<std::size_t> lost;  ///< positions of claims that are not current any more
     std::int64_t requeued = 0;
   };
-  /// Renews the leases of `held` and puts back what nobody has held on to, at one moment: after a jump of the clock
-  /// every other lease looks expired, or, set back, as if it had been given in the future.
-  Beat beat(std::span<const Claim> held, Milliseconds lease);
-  /// Each: false, and nothing changes, unless the claim's attempt is the current one.
-  bool accept(const Claim& claim, const RunResult& result);
-  bool fail(const Claim& claim, const RunFailure& failure);
-  /// Puts a run back. @param crashed  it counts against the job's run
-  bool give_back(const Claim& claim, bool crashed);
+  /// Renews the leases of `held` and requeues the expired ones, at one moment: after a jump of the clock every other
+  /// lease looks expired, or, set back, as if it had been given in the future.
+  Renewal renew_leases(std::span<const Claim> held);
   /// Puts back every leased run: at start, when no worker can be alive.
-  std::vector<Claim> requeue_all();
+  /// @return how many
+  std::int64_t requeue_all();
   /// Jobs all of whose runs have ended but which have not.
   std::vector<Job> complete_jobs();
   /// Jobs of a process that have no runs and have not ended.
@@ -81,13 +89,11 @@ class Store {
   bool start(std::int64_t job);
   bool is_open(std::int64_t job);
 
-  bool is_current(const Claim& claim);
-
   // --- runs, for readers
   // ----------------------------------------------------------------------------------------------
 
   std::vector<Run> runs(std::int64_t job, const RunFilter& filter);
-  std::optional<Run> run(const RunKey& key);
+  std::optional<Run> run(std::int64_t job, const RunKey& key);
 
   // --- records, for statistics
 
@@ -99,7 +105,9 @@ class Store {
 
  private:
   Database db_;
+  std::filesystem::path jobs_;
   Clock clock_;
+  Milliseconds lease_;
 };
 
 }  // namespace talus::service

@@ -8,15 +8,16 @@ namespace {
 
 using SQLite::Statement;
 
-/// Realization 0 first, then the replicates that measure the noise floor, then the others in order.
-void insert_runs(SQLite::Database& db, std::int64_t job, bool floor, std::int64_t first, std::int64_t end,
-                 std::int64_t floor_total) {
-  Statement insert(db, "INSERT INTO runs (job, floor, idx, rank) VALUES (?, ?, ?, ?)");
-  for (std::int64_t i = first; i < end; ++i) {
+/// Queues the runs first <= rank < end of a job that it does not have yet.
+void insert_runs(SQLite::Database& db, std::int64_t job, std::int64_t replicates, std::int64_t first,
+                 std::int64_t end) {
+  Statement insert(db, "INSERT INTO runs (job, floor, idx, rank) VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING");
+  for (std::int64_t rank = first; rank < end; ++rank) {
+    const RunKey key = run_of_rank(rank, replicates);
     insert.bind(1, job);
-    insert.bind(2, floor ? 1 : 0);
-    insert.bind(3, i);
-    insert.bind(4, floor ? i : i == 0 ? 0 : floor_total + i);
+    insert.bind(2, key.is_replicate() ? 1 : 0);
+    insert.bind(3, key.index);
+    insert.bind(4, rank);
     insert.exec();
     insert.reset();
   }
@@ -107,8 +108,7 @@ std::optional<Job> Store::create(const NewJob& job, const Answer& answer) {
       insert.bind(i++, now);
       insert.exec();
       const std::int64_t number = db.getLastInsertRowid();
-      insert_runs(db, number, false, 0, job.planned, job.floor);
-      insert_runs(db, number, true, 1, job.floor + 1, job.floor);
+      if (job.planned > 0) insert_runs(db, number, job.floor, 0, job.floor + job.planned);
       made = one_job(db, number);
       if (answer && !remember(db, answer(*made), now)) throw KeyTaken{};
     });
@@ -122,6 +122,10 @@ std::optional<Job> Store::job(const std::string& id) {
     query.bind(1, id);
     return query.executeStep() ? std::optional(job_of(query)) : std::nullopt;
   });
+}
+
+std::optional<Job> Store::job(std::int64_t number) {
+  return db_.read([&](SQLite::Database& db) { return one_job(db, number); });
 }
 
 std::vector<Job> Store::jobs(const JobFilter& filter) {
@@ -225,7 +229,10 @@ std::int64_t Store::retry_failed(std::int64_t job, const Answer& answer) {
                      "log_tail = NULL WHERE job = ? AND state = 'failed'");
     update.bind(1, job);
     const std::int64_t changed = update.exec();
-    if (changed > 0) {
+    const Job old = *one_job(db, job);
+    // A study that ended because too many had failed, or that was aborted, dropped what it had not run yet.
+    if (old.state == JobState::failed) insert_runs(db, job, old.floor, 0, old.floor + old.planned);
+    if (changed > 0 || old.state == JobState::failed) {
       Statement counts(
           db,
           "UPDATE jobs SET failed = 0, floor_made = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND floor = 1 "
@@ -245,7 +252,7 @@ bool Store::extend(std::int64_t job, std::int64_t planned, const Answer& answer)
       const Milliseconds now = clock_();
       const Job old = *one_job(db, job);
       if (planned <= old.planned || old.state == JobState::dismissed) return;
-      insert_runs(db, job, false, old.planned, planned, old.floor);
+      insert_runs(db, job, old.floor, 0, old.floor + planned);  // also what an ended study dropped
       Statement update(db, "UPDATE jobs SET planned = ? WHERE number = ?");
       update.bind(1, planned);
       update.bind(2, job);
@@ -253,15 +260,6 @@ bool Store::extend(std::int64_t job, std::int64_t planned, const Answer& answer)
       reopen(db, job, now);
       if (answer && !remember(db, answer(*one_job(db, job)), now)) throw KeyTaken{};
     });
-  });
-}
-
-void Store::stop_early(std::int64_t job) {
-  db_.write([&](SQLite::Database& db) {
-    Statement drop(db, "DELETE FROM runs WHERE job = ? AND floor = 0 AND state IN ('queued', 'leased')");
-    drop.bind(1, job);
-    drop.exec();
-    touch(db, job, clock_());
   });
 }
 

@@ -32,18 +32,9 @@ void Store::for_each_record(std::int64_t job, bool floor, const std::function<vo
     query.bind(2, floor ? 1 : 0);
     while (query.executeStep()) {
       const Run run = run_of(query);
-      Record record{.index = run.key.index};
-      if (run.result) {
-        record.done = true;
-        record.measures = run.result->measures;
-        record.mean_phi_deg = run.result->mean_friction_angle_deg;
-        record.captured_variance = run.result->captured_variance.value_or(captured_variance);
-        record.steps = run.result->steps;
-        record.wall_clock = run.result->wall_clock;
-        record.digest = run.result->digest;
-      } else {
-        record.reason = run.failure->reason;
-      }
+      Record record = run.result.value_or(Record{.index = run.key.index});
+      if (run.failure) record.reason = run.failure->reason;
+      if (record.captured_variance == 0.0) record.captured_variance = captured_variance;
       take(record);
     }
   });

@@ -10,7 +10,7 @@ using SQLite::Statement;
 
 /// Whose turn it is: see Store::claim.
 constexpr const char* next_job =
-    "SELECT number, id, seed FROM jobs AS j WHERE state IN ('accepted', 'running') "
+    "SELECT number FROM jobs AS j WHERE state IN ('accepted', 'running') "
     "AND EXISTS (SELECT 1 FROM runs WHERE job = j.number AND state = 'queued') "
     "ORDER BY (SELECT COUNT(*) FROM runs WHERE job = j.number AND state = 'leased'), served, number LIMIT 1";
 
@@ -18,18 +18,18 @@ constexpr const char* next_job =
 constexpr const char* current = " WHERE job = ? AND floor = ? AND idx = ? AND attempt = ? AND state = 'leased'";
 
 void bind_claim(Statement& statement, int first, const Claim& claim) {
-  statement.bind(first, claim.run.job);
-  statement.bind(first + 1, claim.run.floor ? 1 : 0);
-  statement.bind(first + 2, claim.run.index);
+  statement.bind(first, claim.study);
+  statement.bind(first + 1, claim.key.is_replicate() ? 1 : 0);
+  statement.bind(first + 2, claim.key.index);
   statement.bind(first + 3, claim.attempt);
 }
 
-void count(SQLite::Database& db, const RunKey& run, bool done, Milliseconds now) {
-  const char* column = run.floor ? "floor_made" : done ? "done" : "failed";
+void count(SQLite::Database& db, const Claim& claim, bool done, Milliseconds now) {
+  const char* column = claim.key.is_replicate() ? "floor_made" : done ? "done" : "failed";
   Statement update(db, std::string("UPDATE jobs SET ") + column + " = " + column +
                            " + 1, updated = ?, version = version + 1 WHERE number = ?");
   update.bind(1, now);
-  update.bind(2, run.job);
+  update.bind(2, claim.study);
   update.exec();
 }
 
@@ -44,7 +44,7 @@ void started(SQLite::Database& db, std::int64_t job, Milliseconds now) {
 
 }  // namespace
 
-std::optional<Claim> Store::claim(Milliseconds lease) {
+std::optional<Claim> Store::claim() {
   const bool any = db_.read([](SQLite::Database& db) { return Statement(db, next_job).executeStep(); });
   if (!any) return std::nullopt;  // without bothering the writer
   return db_.write([&](SQLite::Database& db) -> std::optional<Claim> {
@@ -53,56 +53,54 @@ std::optional<Claim> Store::claim(Milliseconds lease) {
     {
       Statement query(db, next_job);
       if (!query.executeStep()) return std::nullopt;
-      claim.run.job = query.getColumn(0).getInt64();
-      claim.job_id = query.getColumn(1).getString();
-      claim.seed = query.getColumn(2).getInt64();
+      claim.study = query.getColumn(0).getInt64();
     }
     {
       Statement query(db,
                       "SELECT floor, idx, attempt, crashes FROM runs WHERE job = ? AND state = 'queued' "
                       "ORDER BY rank LIMIT 1");
-      query.bind(1, claim.run.job);
+      query.bind(1, claim.study);
       query.executeStep();
-      claim.run.floor = query.getColumn(0).getInt() != 0;
-      claim.run.index = query.getColumn(1).getInt64();
+      claim.key.kind = kind_of(query.getColumn(0));
+      claim.key.index = query.getColumn(1).getInt64();
       claim.attempt = query.getColumn(2).getInt64() + 1;
-      claim.crashes = query.getColumn(3).getInt64();
+      claim.crashes = query.getColumn(3).getInt();
     }
     Statement take(db,
                    "UPDATE runs SET state = 'leased', attempt = ?, lease_until = ? "
                    "WHERE job = ? AND floor = ? AND idx = ?");
     take.bind(1, claim.attempt);
-    take.bind(2, now + lease);
-    take.bind(3, claim.run.job);
-    take.bind(4, claim.run.floor ? 1 : 0);
-    take.bind(5, claim.run.index);
+    take.bind(2, now + lease_);
+    take.bind(3, claim.study);
+    take.bind(4, claim.key.is_replicate() ? 1 : 0);
+    take.bind(5, claim.key.index);
     take.exec();
     Statement serve(db, "UPDATE jobs SET served = (SELECT MAX(served) + 1 FROM jobs) WHERE number = ?");
-    serve.bind(1, claim.run.job);
+    serve.bind(1, claim.study);
     serve.exec();
-    started(db, claim.run.job, now);
+    started(db, claim.study, now);
     return claim;
   });
 }
 
-Store::Beat Store::beat(std::span<const Claim> held, Milliseconds lease) {
+Store::Renewal Store::renew_leases(std::span<const Claim> held) {
   return db_.write([&](SQLite::Database& db) {
-    Beat beat;
+    Renewal renewal;
     const Milliseconds now = clock_();
     Statement renew(db, std::string("UPDATE runs SET lease_until = ?") + current);
     for (std::size_t i = 0; i < held.size(); ++i) {
-      renew.bind(1, now + lease);
+      renew.bind(1, now + lease_);
       bind_claim(renew, 2, held[i]);
-      if (renew.exec() != 1) beat.lost.push_back(i);
+      if (renew.exec() != 1) renewal.lost.push_back(i);
       renew.reset();
     }
     Statement expire(db,
                      "UPDATE runs SET state = 'queued' WHERE state = 'leased' "
                      "AND (lease_until < ? OR lease_until > ?)");
     expire.bind(1, now);
-    expire.bind(2, now + 2 * lease);
-    beat.requeued = expire.exec();
-    return beat;
+    expire.bind(2, now + 2 * lease_);
+    renewal.requeued = expire.exec();
+    return renewal;
   });
 }
 
@@ -114,7 +112,7 @@ bool Store::is_current(const Claim& claim) {
   });
 }
 
-bool Store::accept(const Claim& claim, const RunResult& result) {
+bool Store::accept(const Claim& claim, const Record& result) {
   return db_.write([&](SQLite::Database& db) {
     std::string set = "UPDATE runs SET state = 'done', ";
     for (const Measure& measure : measure_table) set += measure.key + std::string(" = ?, ");
@@ -123,19 +121,19 @@ bool Store::accept(const Claim& claim, const RunResult& result) {
         set + "mean_friction_angle_deg = ?, captured_variance = ?, steps = ?, wall_clock_s = ?, digest = ?" + current);
     int i = 1;
     for (const Measure& measure : measure_table) update.bind(i++, result.measures.*measure.member);
-    update.bind(i++, result.mean_friction_angle_deg);
-    result.captured_variance ? update.bind(i++, *result.captured_variance) : update.bind(i++);
+    update.bind(i++, result.mean_phi_deg);
+    update.bind(i++, result.captured_variance);
     update.bind(i++, result.steps);
     update.bind(i++, result.wall_clock);
     update.bind(i++, result.digest);
     bind_claim(update, i, claim);
     if (update.exec() != 1) return false;
-    count(db, claim.run, true, clock_());
+    count(db, claim, true, clock_());
     return true;
   });
 }
 
-bool Store::fail(const Claim& claim, const RunFailure& failure) {
+bool Store::fail(const Claim& claim, const Failure& failure) {
   return db_.write([&](SQLite::Database& db) {
     Statement update(db, std::string("UPDATE runs SET state = 'failed', crashes = crashes + 1, reason = ?, "
                                      "exit_code = ?, signal = ?, log_tail = ?") +
@@ -146,7 +144,7 @@ bool Store::fail(const Claim& claim, const RunFailure& failure) {
     update.bind(4, failure.log_tail);
     bind_claim(update, 5, claim);
     if (update.exec() != 1) return false;
-    count(db, claim.run, false, clock_());
+    count(db, claim, false, clock_());
     return true;
   });
 }
@@ -160,22 +158,55 @@ bool Store::give_back(const Claim& claim, bool crashed) {
   });
 }
 
-std::vector<Claim> Store::requeue_all() {
+std::int64_t Store::requeue_all() {
   return db_.write([&](SQLite::Database& db) {
-    std::vector<Claim> held;
-    for (Statement query(db,
-                         "SELECT job, runs.floor, idx, id, jobs.seed, attempt, crashes FROM runs "
-                         "JOIN jobs ON job = number WHERE runs.state = 'leased'");
-         query.executeStep();)
-      held.push_back({{query.getColumn(0).getInt64(), query.getColumn(1).getInt() != 0, query.getColumn(2).getInt64()},
-                      query.getColumn(3).getString(),
-                      query.getColumn(4).getInt64(),
-                      query.getColumn(5).getInt64(),
-                      query.getColumn(6).getInt64()});
-    db.exec("UPDATE runs SET state = 'queued' WHERE state = 'leased'");
+    const std::int64_t runs = db.exec("UPDATE runs SET state = 'queued' WHERE state = 'leased'");
     db.exec("UPDATE jobs SET message = '' WHERE state IN ('accepted', 'running')");  // what they waited for then
-    return held;
+    return runs;
   });
+}
+
+StudyInfo Store::study(StudyNumber number) {
+  const Job job = this->job(number).value();
+  StudyInfo info{.name = job.id,
+                 .paths = {jobs_ / job.id},
+                 .identity = {.seed = static_cast<std::uint64_t>(job.seed), .case_hash = job.case_hash},
+                 .spec = {},
+                 .first = 0,
+                 .end = job.planned};
+  info.spec.realizations = job.planned;
+  info.spec.noise_floor_replicates = static_cast<int>(job.floor);
+  info.spec.max_failed_share = job.max_failed_share;
+  if (!job.may_stop_early) return info;
+  if (const auto plan = find_plan(info.paths.root)) info.spec.stop_half_width = plan->study.stop_half_width;
+  return info;
+}
+
+void Store::visit_records(StudyNumber number, const Visitor& visit) {
+  db_.read([&](SQLite::Database& db) {
+    Statement query(db, std::string("SELECT floor, idx, state, ") + measure_table[0].key +
+                            " FROM runs WHERE job = ? AND state IN ('done', 'failed')");
+    query.bind(1, number);
+    while (query.executeStep()) {
+      const bool done = run_state(query.getColumn(2).getString()) == RunState::done;
+      visit({.kind = kind_of(query.getColumn(0)), .index = query.getColumn(1).getInt64()},
+            done ? std::optional(query.getColumn(3).getDouble()) : std::nullopt);
+    }
+  });
+}
+
+void Store::drop_open_runs(StudyNumber number, bool replicates_too) {
+  db_.write([&](SQLite::Database& db) {
+    Statement drop(db, std::string("DELETE FROM runs WHERE job = ? AND state IN ('queued', 'leased')") +
+                           (replicates_too ? "" : " AND floor = 0"));
+    drop.bind(1, number);
+    if (drop.exec() > 0) touch(db, number, clock_());
+  });
+}
+
+void Store::abort(StudyNumber number, bool, const std::string& why) {
+  drop_open_runs(number, true);
+  finish(number, JobState::failed, why);
 }
 
 std::vector<Job> Store::complete_jobs() {
@@ -234,11 +265,11 @@ std::vector<Run> Store::runs(std::int64_t job, const RunFilter& filter) {
   });
 }
 
-std::optional<Run> Store::run(const RunKey& key) {
+std::optional<Run> Store::run(std::int64_t job, const RunKey& key) {
   return db_.read([&](SQLite::Database& db) -> std::optional<Run> {
     Statement query(db, "SELECT " + run_columns + " FROM runs WHERE job = ? AND floor = ? AND idx = ?");
-    query.bind(1, key.job);
-    query.bind(2, key.floor ? 1 : 0);
+    query.bind(1, job);
+    query.bind(2, key.is_replicate() ? 1 : 0);
     query.bind(3, key.index);
     return query.executeStep() ? std::optional(run_of(query)) : std::nullopt;
   });

@@ -50,7 +50,7 @@ Progress progress_of(const ordered_json& info, double elapsed) {
   p.done = runs.at("done");
   p.failed = runs.at("failed");
   p.made_now = p.done + p.failed;
-  p.waits = info.value("waits", "");
+  p.pending_reason = info.value("waits", "");
   return p;
 }
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
-#include "study/ledger.hpp"
+#include "study/directory_store.hpp"
 #include "study/progress.hpp"
 #include "study/publish.hpp"
 #include "study/summary.hpp"
@@ -29,12 +29,15 @@ struct StatsOptions {
   bool from_runs = false, json = false;
 };
 
-/// The books of a study whose realizations others have run: from the results in its runs/ and floor/.
+/// The records of a study whose realizations others have run: from the results in its runs/ and floor/.
 Tables tables_from_runs(const fs::path& directory) {
   std::optional<Plan> plan = find_plan(directory);
   if (!plan) throw IoError(directory.string() + " does not hold a study: there is no plan.json");
-  const Ledger ledger(StudyPaths{directory}, *plan);
-  return {.plan = std::move(*plan), .runs = ledger.runs(), .floor = ledger.floor()};
+  const StudyPaths paths{directory};
+  const StudyIdentity identity{.seed = plan->seed, .case_hash = plan->case_hash};
+  return {.plan = std::move(*plan),
+          .runs = read_records(paths, RunKind::realization, identity),
+          .floor = read_records(paths, RunKind::replicate, identity)};
 }
 
 /// How one quantity is distributed, in the bins asked for.

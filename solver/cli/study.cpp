@@ -19,8 +19,8 @@
 #include "cli/version.hpp"
 #include "executor/slurm.hpp"
 #include "figures/figures.hpp"
-#include "study/driver.hpp"
 #include "study/paths.hpp"
+#include "study/run_study.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
 #include "support/text.hpp"
@@ -61,7 +61,7 @@ class Reporter {
       std::cerr << progress_line(progress) << "\n";
       shown_ = now;
       made_ = progress.made_now;
-      waits_ = progress.waits;
+      pending_reason_ = progress.pending_reason;
     }
     last_ = progress;
   }
@@ -73,7 +73,9 @@ class Reporter {
   ~Reporter() { finish(); }
 
  private:
-  bool differs(const Progress& progress) const { return progress.made_now != made_ || progress.waits != waits_; }
+  bool differs(const Progress& progress) const {
+    return progress.made_now != made_ || progress.pending_reason != pending_reason_;
+  }
   /// The bar in green, where colours are wanted (https://no-color.org).
   static std::string painted(const std::string& line) {
     const char* no_color = std::getenv("NO_COLOR");
@@ -85,7 +87,7 @@ class Reporter {
   bool terminal_ = ::isatty(STDERR_FILENO) != 0;
   std::optional<Progress> last_;
   std::int64_t made_ = 0;  ///< as shown last, and so on
-  std::string waits_;
+  std::string pending_reason_;
   Clock::time_point shown_ = Clock::now();
 };
 
@@ -97,39 +99,36 @@ std::uint64_t choose_seed(const StudyOptions& options, const Case& problem) {
   return begun ? begun->seed : random_seed();
 }
 
-constexpr int slurm_attempts = 5;  ///< machines differ, and people cancel jobs
-
 /// Array jobs of Slurm instead of processes here.
-void use_slurm(DriverOptions& driver, const StudyOptions& options, Reporter& reporter) {
+void use_slurm(RunStudyOptions& run, const StudyOptions& options, Reporter& reporter) {
   const auto config = options.slurm.empty() ? executor::SlurmConfig{} : executor::read_slurm_config(options.slurm);
-  const std::vector<std::string> array_task{driver.program.front(), "array-task"};
+  const std::vector<std::string> array_task{run.program.front(), "array-task"};
   const auto note = [&reporter](const std::string& text) { reporter.note(text); };
-  driver.make_executor = [=, threads = driver.threads](const StudyPaths& paths) {
+  run.make_executor = [=, threads = run.threads](const StudyPaths& paths) {
     return std::make_unique<executor::SlurmExecutor>(config, fs::absolute(paths.work()) / "slurm", array_task, threads,
                                                      note);
   };
-  driver.attempts = slurm_attempts;
 }
 
-DriverOptions driver_options(const StudyOptions& options, const Plan& plan, Reporter& reporter) {
-  DriverOptions driver;
-  driver.program = {fs::read_symlink("/proc/self/exe").string(), "run"};
-  driver.threads = options.threads;
+RunStudyOptions run_options(const StudyOptions& options, const Plan& plan, Reporter& reporter) {
+  RunStudyOptions run;
+  run.program = {fs::read_symlink("/proc/self/exe").string(), "run"};
+  run.threads = options.threads;
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  driver.workers = options.workers.value_or(std::max(1, cores / options.threads));
+  run.workers = options.workers.value_or(std::max(1, cores / options.threads));
   if (!options.range.empty()) {
     if (plan.study.stop_half_width)
       throw ConfigError("/study/stop_when_ci_half_width_below_m",
                         "only a whole study can stop early; remove this key or --range");
-    driver.first = options.range.front();
-    driver.last = options.range.back() + 1;
+    run.first = options.range.front();
+    run.last = options.range.back() + 1;
   }
-  driver.retry_failed = options.retry_failed;
-  driver.interrupts = [] { return stop_requested() ? 1 : 0; };
-  driver.report = [&reporter](const Progress& progress) { reporter.show(progress); };
-  driver.note = [&reporter](const std::string& text) { reporter.note(text); };
-  if (options.executor == "slurm") use_slurm(driver, options, reporter);
-  return driver;
+  run.retry_failed = options.retry_failed;
+  run.interrupts = [] { return stop_requested() ? 1 : 0; };
+  run.report = [&reporter](const Progress& progress) { reporter.show(progress); };
+  run.note = [&reporter](const std::string& text) { reporter.note(text); };
+  if (options.executor == "slurm") use_slurm(run, options, reporter);
+  return run;
 }
 
 /// The study itself is done; figures that cannot be drawn are no reason to fail.
@@ -151,9 +150,9 @@ void print(const fs::path& directory, bool json) {
             << text_histogram(study.at("quantities").at("influence_zone_m"), 80);
 }
 
-Exit exit_code(Outcome outcome) {
-  if (outcome == Outcome::interrupted) return Exit::interrupted;
-  return outcome == Outcome::too_many_failed ? Exit::too_many_failed : Exit::ok;
+Exit exit_code(StudyEnd end) {
+  if (end == StudyEnd::interrupted) return Exit::interrupted;
+  return end == StudyEnd::too_many_failed ? Exit::too_many_failed : Exit::ok;
 }
 
 Exit study(const StudyOptions& options) try {
@@ -173,17 +172,17 @@ Exit study(const StudyOptions& options) try {
   }
 
   catch_stop_signals();
-  Outcome outcome{};
+  StudyEnd end{};
   {
     Reporter reporter;
-    outcome = run_study(plan, loaded.resolved, options.out, driver_options(options, plan, reporter));
+    end = run_study(plan, loaded.resolved, options.out, run_options(options, plan, reporter));
   }
-  const Exit code = exit_code(outcome);
-  if (outcome == Outcome::interrupted) std::cerr << "stopped; the same command goes on where it was\n";
-  if (outcome == Outcome::too_many_failed)
+  const Exit code = exit_code(end);
+  if (end == StudyEnd::interrupted) std::cerr << "stopped; the same command goes on where it was\n";
+  if (end == StudyEnd::too_many_failed)
     std::cerr << "more realizations failed than study.max_failed_share = " << plan.study.max_failed_share
               << " allows; see " << StudyPaths{options.out}.realizations().string() << "\n";
-  if (outcome != Outcome::interrupted && !options.no_figures) draw_figures(options.out);
+  if (end != StudyEnd::interrupted && !options.no_figures) draw_figures(options.out);
   print(options.out, options.json);
   return code;
 } catch (const executor::SlurmConfigError& e) {

@@ -28,7 +28,7 @@ struct Ended {
   ProcessEnd end = {};
   bool resumed = false;    ///< it began from a checkpoint
   bool timed_out = false;  ///< killed, since it took longer than its limits.wall_seconds
-  bool taken = false;      ///< preempted or lost with its node; not counted as an attempt, `end` is meaningless
+  bool preempted = false;  ///< preempted or lost with its node; not counted as an attempt, `end` is meaningless
   std::string why = {};    ///< reason in one line, if the process did not end by itself
 };
 
@@ -49,9 +49,9 @@ class Executor {
   /// Ends a run.
   virtual void kill(RunId id) = 0;
   /// Why no run of this group is in progress, one line; empty while one is, or if the reason is unknown.
-  virtual std::string waits(const std::string& group) const = 0;
+  virtual std::string pending_reason(const std::string& group) const = 0;
   /// Runs continue when this process ends; a later process that starts a run of the same name adopts it.
-  virtual bool survives_us() const = 0;
+  virtual bool outlives_this_process() const = 0;
 };
 
 }  // namespace talus::executor

@@ -19,8 +19,8 @@ class LocalExecutor final : public Executor {
   std::vector<Ended> poll() override;
   void stop_all() override;
   void kill(RunId id) override;
-  std::string waits(const std::string&) const override { return {}; }
-  bool survives_us() const override { return false; }
+  std::string pending_reason(const std::string&) const override { return {}; }
+  bool outlives_this_process() const override { return false; }
 
  private:
   struct Worker {

@@ -12,8 +12,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t pilots = 8;  ///< runs at a time while their duration is unknown
-constexpr int misses = 2;          ///< polls without the task after which it is gone
+constexpr std::size_t probe_runs = 8;  ///< runs at a time while their duration is unknown
+constexpr int misses = 2;              ///< polls without the task after which it is gone
 
 constexpr const char* never_submitted = "never submitted";
 
@@ -47,26 +47,26 @@ std::size_t SlurmExecutor::open_tasks() const {
   return n;
 }
 
-bool SlurmExecutor::has_room() const { return !stopping_ && unknown_ < pilots && load_ < config_.array_tasks; }
+bool SlurmExecutor::has_room() const { return !stopping_ && unknown_ < probe_runs && load_ < config_.array_tasks; }
 
-void SlurmExecutor::weigh(const Run& run, bool waits) {
+void SlurmExecutor::estimate_load(const Run& run, bool waits) {
   const std::optional<double> run_s = times_.of(run.group);
   if (!run_s) ++unknown_;
   if (waits) load_ += run_s ? std::min(1.0, *run_s / config_.task_s) : 1.0;
 }
 
-void SlurmExecutor::weigh_all() {
+void SlurmExecutor::estimate_all_load() {
   load_ = static_cast<double>(open_tasks());
   unknown_ = 0;
-  for (const Entry& waiting : waiting_) weigh(waiting.run, true);
-  for (const auto& [id, place] : open_) weigh(entry(place).run, false);
+  for (const Entry& waiting : waiting_) estimate_load(waiting.run, true);
+  for (const auto& [id, place] : open_) estimate_load(entry(place).run, false);
 }
 
 RunId SlurmExecutor::start(const Run& run) {
   const RunId id = ++last_;
   const bool waits = !take_over(run, id);
   if (waits) waiting_.push_back({.run = run, .id = id});
-  weigh(run, waits);
+  estimate_load(run, waits);
   return id;
 }
 
@@ -87,7 +87,7 @@ void SlurmExecutor::kill(RunId id) {
                               [](const Entry& e) { return e.ended || e.killed || e.id == 0; });
 }
 
-std::string SlurmExecutor::waits(const std::string& group) const {
+std::string SlurmExecutor::pending_reason(const std::string& group) const {
   std::set<std::string> reasons;
   for (const Batch& batch : batches_)
     for (const Task& task : batch.tasks) {
@@ -102,26 +102,26 @@ std::string SlurmExecutor::waits(const std::string& group) const {
 
 void SlurmExecutor::stop_all() {
   stopping_ = true;
-  for (const Entry& entry : waiting_) ended_.push_back({.id = entry.id, .taken = true});
+  for (const Entry& entry : waiting_) ended_.push_back({.id = entry.id, .preempted = true});
   waiting_.clear();
   for (Batch& batch : batches_)
     for (Task& task : batch.tasks) task.unwanted = true;
-  next_look_ = next_cancel_ = {};
+  next_cycle_ = next_cancel_ = {};
 }
 
 std::vector<Ended> SlurmExecutor::poll() {
   end_calls();
-  if (Steady::now() >= next_look_) look();
+  if (Steady::now() >= next_cycle_) poll_cycle();
   return std::exchange(ended_, {});
 }
 
 /// The files first, then the verdict of a queue that was asked before they were read: a task that was over then has
 /// written all that it will.
-void SlurmExecutor::look() {
-  next_look_ = Steady::now() + poll_;
+void SlurmExecutor::poll_cycle() {
+  next_cycle_ = Steady::now() + poll_;
   for (Batch& batch : batches_) collect(batch);
   if (queue_) {
-    for (Batch& batch : batches_) judge(batch);
+    for (Batch& batch : batches_) reconcile(batch);
     queue_.reset();
   }
   drop_unclaimed();
@@ -129,7 +129,7 @@ void SlurmExecutor::look() {
   cancel_unwanted();
   submit();
   ask_queue();
-  weigh_all();
+  estimate_all_load();
 }
 
 /// Takes in the statuses that are new.
@@ -163,7 +163,7 @@ void SlurmExecutor::end(Entry& entry, Ended how) {
 }
 
 /// Which tasks of a batch are gone, with runs that have no status.
-void SlurmExecutor::judge(Batch& batch) {
+void SlurmExecutor::reconcile(Batch& batch) {
   if (queue_begun_ <= batch.since) return;
   if (!batch.job && &batch != submitting_) {  // ours died before it heard from sbatch
     batch.job = queue_->job_named("talus-" + batch.directory.path().filename().string());
@@ -189,12 +189,12 @@ void SlurmExecutor::judge(Batch& batch) {
     // NFS may list a file half a minute late, but opens it by name at once.
     for (std::size_t k = 0; k < task.entries.size(); ++k)
       if (batch.directory.has_status({i, k})) take_in(batch, {i, k});
-    lose(batch, i, queued ? queued->state : batch.job ? "forgotten" : never_submitted);
+    mark_lost(batch, i, queued ? queued->state : batch.job ? "forgotten" : never_submitted);
   }
 }
 
 /// The task is gone. Its first run without a status is the one it had begun; those behind it are as they were.
-void SlurmExecutor::lose(Batch& batch, std::size_t index, const std::string& state) {
+void SlurmExecutor::mark_lost(Batch& batch, std::size_t index, const std::string& state) {
   bool begun = true;
   Task& task = batch.tasks[index];
   task.over = true;
@@ -203,8 +203,8 @@ void SlurmExecutor::lose(Batch& batch, std::size_t index, const std::string& sta
     if (entry.killed)
       end(entry, {.end = {.signal = SIGKILL}});
     else if (!begun || is_innocent(state))
-      end(entry,
-          {.taken = true, .why = begun && state != "COMPLETED" ? "taken from its machine (Slurm: " + state + ")" : ""});
+      end(entry, {.preempted = true,
+                  .why = begun && state != "COMPLETED" ? "taken from its machine (Slurm: " + state + ")" : ""});
     else
       end(entry, {.end = {.signal = SIGKILL}, .why = "lost by Slurm (" + state + ")"});
     begun = false;

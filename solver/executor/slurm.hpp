@@ -37,8 +37,8 @@ class SlurmExecutor final : public Executor {
   std::vector<Ended> poll() override;
   void stop_all() override;
   void kill(RunId id) override;
-  std::string waits(const std::string& group) const override;
-  bool survives_us() const override { return true; }
+  std::string pending_reason(const std::string& group) const override;
+  bool outlives_this_process() const override { return true; }
 
  private:
   using Steady = std::chrono::steady_clock;
@@ -75,17 +75,17 @@ class SlurmExecutor final : public Executor {
   };
 
   // slurm.cpp: starting runs, and the poll cycle
-  void look();
+  void poll_cycle();
   void collect(Batch& batch);
   void take_in(Batch& batch, RunPlace place);
-  void judge(Batch& batch);
-  void lose(Batch& batch, std::size_t index, const std::string& state);
+  void reconcile(Batch& batch);
+  void mark_lost(Batch& batch, std::size_t index, const std::string& state);
   void end(Entry& entry, Ended how);
   void drop_finished();
   Entry& entry(const Place& place) { return place.batch->tasks[place.run.task].entries[place.run.position]; }
   std::size_t open_tasks() const;
-  void weigh(const Run& run, bool waits);
-  void weigh_all();
+  void estimate_load(const Run& run, bool waits);
+  void estimate_all_load();
   // slurm_recover.cpp: what an earlier process left
   void recover();
   void recover(const std::filesystem::path& path);
@@ -124,7 +124,7 @@ class SlurmExecutor final : public Executor {
   std::optional<Call> sbatch_, squeue_, scancel_;
   Batch* submitting_ = nullptr;      ///< what sbatch_ is about
   std::optional<SlurmQueue> queue_;  ///< empty before the first poll
-  Steady::time_point queue_begun_{}, next_look_{}, next_queue_{}, next_submit_{}, next_cancel_{};
+  Steady::time_point queue_begun_{}, next_cycle_{}, next_queue_{}, next_submit_{}, next_cancel_{};
   int refusals_ = 0;             ///< of sbatch, one after the other
   bool answered_since_ = false;  ///< squeue worked since the first of them
   bool away_ = false;            ///< squeue does not work

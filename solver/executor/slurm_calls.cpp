@@ -97,7 +97,7 @@ void SlurmExecutor::queue_seen(const Call& call, const ProcessEnd& end) try {
   if (end.signal != 0 || end.exit_code != 0) throw SlurmAnswerError("squeue: " + complaint(call.err, end));
   queue_.emplace(content(call.out));
   queue_begun_ = call.begin;
-  next_look_ = {};
+  next_cycle_ = {};
   answered_since_ = true;
   if (std::exchange(away_, false)) note_("Slurm answers again");
 } catch (const SlurmAnswerError& e) {
@@ -127,7 +127,7 @@ void SlurmExecutor::not_submitted(const std::string& why) {
       if (entry->killed)
         ended_.push_back({.id = entry->id, .end = {.signal = SIGKILL}});
       else if (stopping_)
-        ended_.push_back({.id = entry->id, .taken = true});
+        ended_.push_back({.id = entry->id, .preempted = true});
       else
         waiting_.push_front(std::move(*entry));
     }

@@ -1,26 +1,17 @@
 #pragma once
-// Where things lie in the directory of a study.
+// The layout of a study directory.
 
-#include <cstdint>
 #include <filesystem>
-#include <string>
+
+#include "study/run_key.hpp"
 
 namespace talus {
-
-/// One run of a study: a realization, or a replicate of realization 0 that measures the noise floor (k = 1, 2, ...).
-struct Job {
-  bool floor = false;
-  std::int64_t index = 0;  ///< realization, or k
-  bool operator==(const Job&) const = default;
-};
-
-/// "realization 12", "noise-floor replicate 3"
-std::string job_name(Job job);
 
 struct StudyPaths {
   std::filesystem::path root;
 
   std::filesystem::path resolved_case() const { return root / "case.resolved.json"; }
+  std::filesystem::path plan() const { return root / "plan.json"; }
   std::filesystem::path realizations() const { return root / "realizations.csv"; }
   std::filesystem::path noise_floor() const { return root / "noise_floor.csv"; }
   std::filesystem::path summary() const { return root / "study.json"; }
@@ -30,10 +21,16 @@ struct StudyPaths {
   std::filesystem::path runs() const { return root / "runs"; }
   std::filesystem::path floor() const { return root / "floor"; }
 
-  std::filesystem::path result(Job job) const;   ///< runs/000012.json, floor/3.json
-  std::filesystem::path failure(Job job) const;  ///< runs/000012.failed.json
-  std::filesystem::path work(Job job) const;     ///< work/000012, work/floor-3: where its process writes
-  std::filesystem::path log(Job job) const;      ///< work/000012.log
+  std::filesystem::path results(RunKind kind) const { return kind == RunKind::replicate ? floor() : runs(); }
+  std::filesystem::path result(const RunKey& key) const {  ///< runs/000012.json, floor/3.json
+    return results(key.kind) / (file_stem(key) + ".json");
+  }
+  std::filesystem::path failure(const RunKey& key) const {  ///< runs/000012.failed.json
+    return results(key.kind) / (file_stem(key) + ".failed.json");
+  }
+  /// work/000012, work/floor-3: where the process of a run writes.
+  std::filesystem::path work(const RunKey& key) const { return work() / work_name(key); }
+  std::filesystem::path log(const RunKey& key) const { return work(key).concat(".log"); }  ///< work/000012.log
 };
 
 }  // namespace talus

@@ -12,7 +12,7 @@ namespace talus {
 
 struct Plan {
   std::string title;
-  std::string case_hash;  ///< LoadedCase::hash
+  std::string case_hash;  ///< of the resolved case
   std::string version;    ///< of the program that runs it
   std::uint64_t seed = 0;
   StudySpec study;  ///< `study.seed` is not used

@@ -62,7 +62,7 @@ std::optional<double> time_left(const Progress& p) {
 std::string progress_line(const Progress& p) {
   std::string text = std::to_string(p.done) + "/" + std::to_string(p.planned) + " done, " + std::to_string(p.failed) +
                      " failed, " + std::to_string(p.running) + " running";
-  if (!p.waits.empty()) text += ", " + p.waits;
+  if (!p.pending_reason.empty()) text += ", " + p.pending_reason;
   if (p.made_now > 0 && p.elapsed > 0.0)
     text += format(", %.3g/h", 3600.0 * static_cast<double>(p.made_now) / p.elapsed);
   if (const auto left = time_left(p)) text += ", " + duration(*left) + " left";

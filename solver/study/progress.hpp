@@ -20,7 +20,7 @@ struct Progress {
   double elapsed = 0.0;                        ///< since this process began [s]
   std::optional<double> mean = {};             ///< influence zone [m]
   std::optional<double> mean_half_width = {};  ///< of its 95 % interval [m]
-  std::string waits = {};                      ///< why no run is under way, where that is known
+  std::string pending_reason = {};             ///< why no run is under way, where that is known
 };
 
 /// Time to go at the present rate [s]; unset before the first run has ended.

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "study/csv.hpp"
-#include "study/stop_rule.hpp"
+#include "study/estimator.hpp"
 #include "study/summary.hpp"
 #include "support/atomic_file.hpp"
 #include "support/files.hpp"

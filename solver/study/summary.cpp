@@ -239,9 +239,4 @@ Json distribution(const Plan& plan, const Measure& measure, const MeasureSample&
           {"histogram", std::move(histogram)}};
 }
 
-bool too_many_failed(const Plan& plan, const std::vector<Record>& runs) {
-  const auto failed = std::count_if(runs.begin(), runs.end(), [](const Record& r) { return !r.done; });
-  return static_cast<double>(failed) > plan.study.max_failed_share * static_cast<double>(runs.size());
-}
-
 }  // namespace talus

@@ -82,7 +82,4 @@ struct Bins {
 /// What `talus stats --quantity` prints and the histogram of talusd answers.
 Json distribution(const Plan& plan, const Measure& measure, const MeasureSample& sample, const Bins& bins);
 
-/// More realizations failed than `plan.study.max_failed_share` of those made.
-bool too_many_failed(const Plan& plan, const std::vector<Record>& runs);
-
 }  // namespace talus

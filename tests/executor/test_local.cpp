@@ -44,7 +44,7 @@ TEST(LocalExecutor, HasAsManyPlacesAsItWasGiven) {
   const Ended ended = next(executor);
   EXPECT_EQ(ended.id, first);
   EXPECT_EQ(ended.end.exit_code, 3);
-  EXPECT_FALSE(ended.taken);
+  EXPECT_FALSE(ended.preempted);
   EXPECT_TRUE(executor.has_room());
   executor.kill(second);
   EXPECT_EQ(next(executor).end.signal, SIGKILL);

@@ -135,7 +135,7 @@ TEST_F(Slurm, ALostNodeIsNotTheRunsFaultAndACancelledTaskMayBe) {
     EXPECT_TRUE(ended.empty());
     state(word);
     until([&] { return !ended.empty(); });
-    EXPECT_EQ(ended[0].taken, taken) << word;
+    EXPECT_EQ(ended[0].preempted, taken) << word;
     EXPECT_EQ(ended[0].end.signal, taken ? 0 : SIGKILL) << word;
   }
 }
@@ -146,7 +146,7 @@ TEST_F(Slurm, AStatusCountsWhateverTheQueueSays) {
   batch().write_status({0, 0}, {.end = {.exit_code = 0}, .seconds = 1.0});
   state("CANCELLED");
   until([&] { return !ended.empty(); });
-  EXPECT_FALSE(ended[0].taken);
+  EXPECT_FALSE(ended[0].preempted);
   EXPECT_EQ(ended[0].end.signal, 0);
 }
 
@@ -215,7 +215,7 @@ TEST_F(Slurm, AnAnswerOfSbatchThatNobodyHeard) {
   make();
   start("a");
   until([&] { return !ended.empty(); });  // Slurm never got it
-  EXPECT_TRUE(ended[0].taken);
+  EXPECT_TRUE(ended[0].preempted);
   until([&] { return !fs::exists(files.path()); });
   EXPECT_EQ(calls(), 1);
 }
@@ -227,16 +227,16 @@ TEST_F(Slurm, SaysWhyNothingRuns) {
   };
   start("a");
   start("b");
-  EXPECT_EQ(executor->waits("g"), "");
+  EXPECT_EQ(executor->pending_reason("g"), "");
   until_submitted();
   queue(task(0, "PENDING", "Resources") + "," + task(1, "PENDING", "JobHeldUser"));
-  until([&] { return executor->waits("g") == "waits in Slurm's queue: JobHeldUser, Resources"; });
-  EXPECT_EQ(executor->waits("h"), "");
+  until([&] { return executor->pending_reason("g") == "waits in Slurm's queue: JobHeldUser, Resources"; });
+  EXPECT_EQ(executor->pending_reason("h"), "");
   queue(task(0, "RUNNING", "None") + "," + task(1, "PENDING", "JobHeldUser"));
-  until([&] { return executor->waits("g").empty(); });
+  until([&] { return executor->pending_reason("g").empty(); });
   batch().write_status({0, 0}, {.end = {}, .seconds = 1.0});
   queue(task(1, "PENDING", "JobHeldUser"));
-  until([&] { return executor->waits("g") == "waits in Slurm's queue: JobHeldUser"; });
+  until([&] { return executor->pending_reason("g") == "waits in Slurm's queue: JobHeldUser"; });
   EXPECT_EQ(ended.size(), 1u);
 }
 

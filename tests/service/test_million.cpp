@@ -10,6 +10,7 @@
 #include "jobs/statistics.hpp"
 #include "queue/store.hpp"
 #include "study/csv.hpp"
+#include "study/estimator.hpp"
 #include "study/publish.hpp"
 #include "temporary_directory.hpp"
 
@@ -54,7 +55,8 @@ Job million_job(Store& store, const std::filesystem::path& database) {
 
 TEST(MillionRealizations, HistogramAndTablesComeFromTheRecords) {
   const test::TemporaryDirectory directory;
-  Store store(directory / "queue.sqlite", [] { return Milliseconds{1'000'000}; });
+  Store store(
+      directory / "queue.sqlite", directory / "jobs", [] { return Milliseconds{1'000'000}; }, 30'000);
   const Job job = million_job(store, directory / "queue.sqlite");
   Plan plan{.title = "A slope", .case_hash = "0123456789abcdef", .version = "0", .seed = 1, .study = {}};
   plan.study.realizations = million;
@@ -71,6 +73,13 @@ TEST(MillionRealizations, HistogramAndTablesComeFromTheRecords) {
   EXPECT_NEAR(answer.at("mean").get<double>(), 30.0 + 0.01 * 998.0 / 2.0, 1e-9);
   const auto counts = answer.at("histogram").at("counts").get<std::vector<std::int64_t>>();
   EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}), million - 1000);
+
+  begin = std::chrono::steady_clock::now();
+  Estimator estimator(plan.study, 0, million);
+  store.visit_records(job.number, [&](const RunKey& key, std::optional<double> zone) { estimator.add(key, zone); });
+  std::cout << "the engine opens a study of a million records: " << seconds_since(begin) << " s\n";
+  EXPECT_EQ(estimator.done(), million - 1000);
+  EXPECT_EQ(estimator.failed(), 1000);
 
   begin = std::chrono::steady_clock::now();
   const StudySummary summary = publish_study(store, job, plan, StudyPaths{directory.path()});

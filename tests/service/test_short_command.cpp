@@ -10,8 +10,8 @@ namespace {
 TEST(ShortCommand, IsKilledAfterItsLimit) {
   const test::TemporaryDirectory directory;
   const auto begin = std::chrono::steady_clock::now();
-  const Outcome outcome = run_to_end({.arguments = {"/bin/sh", "-c", "echo begun; sleep 100"}}, directory.path(),
-                                     std::chrono::milliseconds(200));
+  const CommandOutput outcome = run_to_end({.arguments = {"/bin/sh", "-c", "echo begun; sleep 100"}}, directory.path(),
+                                           std::chrono::milliseconds(200));
   EXPECT_TRUE(outcome.timed_out);
   EXPECT_EQ(outcome.end.signal, SIGKILL);
   EXPECT_EQ(outcome.out, "begun\n");

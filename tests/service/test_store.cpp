@@ -21,17 +21,25 @@ struct StoreTest : testing::Test {
   std::unique_ptr<Store> store = open();
 
   std::unique_ptr<Store> open() {
-    return std::make_unique<Store>(directory / "queue.sqlite", [this] { return now; });
+    return std::make_unique<Store>(
+        directory / "queue.sqlite", directory / "jobs", [this] { return now; }, lease);
   }
   Job add(const std::string& id, std::int64_t realizations, std::int64_t floor = 0, const std::string& subject = "a") {
     return *store->create(
         {.id = id, .process = "influence-zone", .subject = subject, .planned = realizations, .floor = floor});
   }
   Job job(const std::string& id) { return *store->job(id); }
-  static RunResult result(double zone) {
-    return {
-        .measures = {zone, 1, 2, 3, 4}, .mean_friction_angle_deg = 25, .steps = 9, .wall_clock = 0.5, .digest = "d"};
+  static Record result(double zone) {
+    return {.done = true,
+            .measures = {zone, 1, 2, 3, 4},
+            .mean_phi_deg = 25,
+            .captured_variance = 0.9,
+            .steps = 9,
+            .wall_clock = 0.5,
+            .digest = "d"};
   }
+  /// How many runs the store puts back when `held` are renewed.
+  std::int64_t requeued(std::vector<Claim> held = {}) { return store->renew_leases(held).requeued; }
 };
 
 TEST_F(StoreTest, AJobIsThereAfterReopening) {
@@ -48,8 +56,8 @@ TEST_F(StoreTest, AJobIsThereAfterReopening) {
 TEST_F(StoreTest, RunsAreClaimedOnceEachOriginThenFloorThenTheRest) {
   const Job made = add("one", 3, 2);
   std::vector<std::string> order;
-  while (const auto claim = store->claim(lease))
-    order.push_back((claim->run.floor ? "f" : "r") + std::to_string(claim->run.index));
+  while (const auto claim = store->claim())
+    order.push_back((claim->key.is_replicate() ? "f" : "r") + std::to_string(claim->key.index));
   EXPECT_EQ(order, (std::vector<std::string>{"r0", "f1", "f2", "r1", "r2"}));
   EXPECT_EQ(job("one").state, JobState::running);
   EXPECT_TRUE(store->complete_jobs().empty());
@@ -61,10 +69,10 @@ TEST_F(StoreTest, ClaimsAreSharedByTwoThreads) {
   std::mutex mutex;
   std::multiset<std::int64_t> seen;
   const auto work = [&] {
-    while (const auto claim = store->claim(lease)) {
+    while (const auto claim = store->claim()) {
       store->accept(*claim, result(1));
       const std::lock_guard lock(mutex);
-      seen.insert(claim->run.index);
+      seen.insert(claim->key.index);
     }
   };
   std::thread a(work), b(work);
@@ -76,10 +84,10 @@ TEST_F(StoreTest, ClaimsAreSharedByTwoThreads) {
 
 TEST_F(StoreTest, AResultCountsOnlyFromTheCurrentAttempt) {
   add("one", 1);
-  const Claim first = *store->claim(lease);
+  const Claim first = *store->claim();
   now += lease + 1;
-  EXPECT_EQ(store->beat({}, lease).requeued, 1);
-  const Claim second = *store->claim(lease);
+  EXPECT_EQ(requeued(), 1);
+  const Claim second = *store->claim();
   EXPECT_EQ(second.attempt, first.attempt + 1);
   EXPECT_FALSE(store->is_current(first));
   EXPECT_FALSE(store->accept(first, result(1)));
@@ -89,62 +97,60 @@ TEST_F(StoreTest, AResultCountsOnlyFromTheCurrentAttempt) {
   EXPECT_TRUE(store->accept(second, result(2)));
   EXPECT_FALSE(store->accept(second, result(3)));
   EXPECT_EQ(job("one").done, 1);
-  EXPECT_EQ(store->run(second.run)->result->measures.influence_zone, 2);
+  EXPECT_EQ(store->run(second.study, second.key)->result->measures.influence_zone, 2);
 }
 
-TEST_F(StoreTest, HeartbeatsKeepALeaseAndTellOfALostOne) {
+TEST_F(StoreTest, RenewingKeepsALeaseAndTellsOfALostOne) {
   add("one", 2);
-  const Claim kept = *store->claim(lease), lost = *store->claim(lease);
+  const Claim kept = *store->claim(), lost = *store->claim();
   now += lease - 1;
-  EXPECT_TRUE(store->beat(std::vector{kept}, lease).lost.empty());
+  EXPECT_TRUE(store->renew(std::vector{kept}).empty());
   now += 2;
-  EXPECT_EQ(store->beat({}, lease).requeued, 1);
-  EXPECT_EQ(store->beat(std::vector{kept, lost}, lease).lost, (std::vector<std::size_t>{1}));
+  EXPECT_EQ(requeued(), 1);
+  EXPECT_EQ(store->renew(std::vector{kept, lost}), (std::vector<std::size_t>{1}));
 }
 
 TEST_F(StoreTest, AClockSetBackDoesNotHoldALeaseForEver) {
   add("one", 1);
-  store->claim(lease);
+  store->claim();
   now -= 3'600'000;
-  EXPECT_EQ(store->beat({}, lease).requeued, 1);
+  EXPECT_EQ(requeued(), 1);
 }
 
 TEST_F(StoreTest, WhatIsHeldSurvivesAnyJumpOfTheClock) {
   add("one", 1);
-  const Claim held = *store->claim(lease);
+  const Claim held = *store->claim();
   for (const Milliseconds jump : {3'600'000, -7'200'000, 86'400'000}) {
     now += jump;
-    const Store::Beat beat = store->beat(std::vector{held}, lease);
-    EXPECT_TRUE(beat.lost.empty());
-    EXPECT_EQ(beat.requeued, 0);
+    const Store::Renewal renewal = store->renew_leases(std::vector{held});
+    EXPECT_TRUE(renewal.lost.empty());
+    EXPECT_EQ(renewal.requeued, 0);
   }
 }
 
 TEST_F(StoreTest, ReopeningPutsBackEveryLeaseButNoResult) {
   add("one", 3);
-  const Claim done = *store->claim(lease);
+  const Claim done = *store->claim();
   store->accept(done, result(1));
-  store->claim(lease);
+  store->claim();
   store = open();
-  const std::vector<Claim> held = store->requeue_all();
-  ASSERT_EQ(held.size(), 1u);
-  EXPECT_EQ(held[0].run.index, 1);
+  EXPECT_EQ(store->requeue_all(), 1);
   EXPECT_EQ(store->census().runs[static_cast<std::size_t>(RunState::queued)], 2);
   EXPECT_EQ(store->census().runs[static_cast<std::size_t>(RunState::done)], 1);
-  EXPECT_EQ(store->claim(lease)->attempt, 2);
+  EXPECT_EQ(store->claim()->attempt, 2);
 }
 
 TEST_F(StoreTest, OneHugeJobDoesNotStarveASmallOne) {
   add("huge", 1000);
   std::vector<Claim> running;
-  for (int i = 0; i < 4; ++i) running.push_back(*store->claim(lease));
+  for (int i = 0; i < 4; ++i) running.push_back(*store->claim());
   add("small", 3);
   std::string order;
   for (int i = 0; i < 4; ++i) {  // the huge one's runs end; the small one gets every place until it has as many
     store->accept(running.front(), result(1));
     running.erase(running.begin());
-    running.push_back(*store->claim(lease));
-    order += running.back().job_id + " ";
+    running.push_back(*store->claim());
+    order += store->job(running.back().study)->id + " ";
   }
   EXPECT_EQ(order, "small small huge huge ");
 }
@@ -153,8 +159,8 @@ TEST_F(StoreTest, EqualJobsTakeTurns) {
   add("a", 100), add("b", 100);
   std::string order;
   for (int i = 0; i < 6; ++i) {
-    const Claim claim = *store->claim(lease);
-    order += claim.job_id;
+    const Claim claim = *store->claim();
+    order += store->job(claim.study)->id;
     store->accept(claim, result(1));
   }
   EXPECT_EQ(order, "ababab");
@@ -162,13 +168,13 @@ TEST_F(StoreTest, EqualJobsTakeTurns) {
 
 TEST_F(StoreTest, CrashesAreCountedInterruptionsAreNot) {
   add("one", 1);
-  store->give_back(*store->claim(lease), false);
-  store->give_back(*store->claim(lease), true);
-  const Claim third = *store->claim(lease);
+  store->give_back(*store->claim(), false);
+  store->give_back(*store->claim(), true);
+  const Claim third = *store->claim();
   EXPECT_EQ(third.attempt, 3);
   EXPECT_EQ(third.crashes, 1);
   EXPECT_TRUE(store->fail(third, {.reason = "killed", .signal = 9, .log_tail = "tail"}));
-  const service::Run run = *store->run(third.run);
+  const service::Run run = *store->run(third.study, third.key);
   EXPECT_EQ(run.failure->signal, 9);
   EXPECT_FALSE(run.failure->exit_code);
   EXPECT_EQ(run.failure->log_tail, "tail");
@@ -177,7 +183,7 @@ TEST_F(StoreTest, CrashesAreCountedInterruptionsAreNot) {
 
 TEST_F(StoreTest, AJobEndsOnlyWhenNothingOfItIsLeft) {
   const Job made = add("one", 1);
-  const Claim claim = *store->claim(lease);
+  const Claim claim = *store->claim();
   EXPECT_FALSE(store->finish(made.number, JobState::successful, ""));
   store->accept(claim, result(1));
   ASSERT_EQ(store->complete_jobs().size(), 1u);
@@ -192,7 +198,7 @@ TEST_F(StoreTest, AnOpenJobSaysWhyItWaits) {
   store->note_waits(made.number, "waits for rain");
   EXPECT_EQ(job("one").message, "waits for rain");
   EXPECT_GT(job("one").version, made.version);
-  store->accept(*store->claim(lease), result(1));
+  store->accept(*store->claim(), result(1));
   store->finish(made.number, JobState::successful, "done");
   store->note_waits(made.number, "waits for rain");
   EXPECT_EQ(job("one").message, "done");
@@ -200,38 +206,82 @@ TEST_F(StoreTest, AnOpenJobSaysWhyItWaits) {
 
 TEST_F(StoreTest, DismissingTakesTheRunsAway) {
   const Job made = add("one", 3);
-  const Claim claim = *store->claim(lease);
+  const Claim claim = *store->claim();
   store->dismiss(made.number);
   EXPECT_FALSE(store->accept(claim, result(1)));
-  EXPECT_EQ(store->beat(std::vector{claim}, lease).lost.size(), 1u);
-  EXPECT_FALSE(store->claim(lease));
+  EXPECT_EQ(store->renew(std::vector{claim}).size(), 1u);
+  EXPECT_FALSE(store->claim());
   EXPECT_EQ(job("one").state, JobState::dismissed);
   EXPECT_FALSE(store->is_open(made.number));
 }
 
 TEST_F(StoreTest, RetryTakesOnlyTheFailedOnes) {
   const Job made = add("one", 2);
-  store->accept(*store->claim(lease), result(1));
-  store->fail(*store->claim(lease), {.reason = "diverged", .exit_code = 4});
+  store->accept(*store->claim(), result(1));
+  store->fail(*store->claim(), {.reason = "diverged", .exit_code = 4});
   store->finish(made.number, JobState::failed, "");
   EXPECT_EQ(store->retry_failed(made.number), 1);
   EXPECT_EQ(job("one").state, JobState::running);
   EXPECT_EQ(job("one").failed, 0);
-  EXPECT_EQ(store->claim(lease)->run.index, 1);
-  EXPECT_FALSE(store->claim(lease));
+  EXPECT_EQ(store->claim()->run.index, 1);
+  EXPECT_FALSE(store->claim());
+}
+
+TEST_F(StoreTest, AStudyThatStopsEarlyKeepsItsReplicates) {
+  const Job made = add("one", 4, 2);
+  store->accept(*store->claim(), result(1));
+  const Claim replicate = *store->claim(), later = *store->claim(), realization = *store->claim();
+  store->drop_open_runs(made.number, false);
+  EXPECT_TRUE(store->is_current(replicate));
+  EXPECT_TRUE(store->is_current(later));
+  EXPECT_FALSE(store->is_current(realization));
+  EXPECT_FALSE(store->claim());
+}
+
+TEST_F(StoreTest, AnAbortedJobSaysWhyAndGoesOnWhenRetried) {
+  const Job made = add("one", 3, 1);
+  store->accept(*store->claim(), result(1));
+  const Claim claim = *store->claim();
+  store->abort(made.number, true, "refuses the case");
+  EXPECT_FALSE(store->is_current(claim));
+  EXPECT_EQ(job("one").state, JobState::failed);
+  EXPECT_EQ(job("one").message, "refuses the case");
+  EXPECT_EQ(store->retry_failed(made.number), 0);
+  EXPECT_EQ(job("one").state, JobState::running);
+  std::string order;
+  while (const auto next = store->claim())
+    order += (next->key.is_replicate() ? "f" : "r") + std::to_string(next->key.index);
+  EXPECT_EQ(order, "f1r1r2");
+}
+
+TEST_F(StoreTest, TheEngineSeesEveryRecord) {
+  const Job made = add("one", 3, 1);
+  store->accept(*store->claim(), result(7.0));
+  store->accept(*store->claim(), result(8.0));
+  store->fail(*store->claim(), {.reason = "diverged"});
+  std::string seen;
+  store->visit_records(made.number, [&](const RunKey& key, std::optional<double> zone) {
+    seen += work_name(key) + (zone ? " " + std::to_string(static_cast<int>(*zone)) : " failed") + "; ";
+  });
+  EXPECT_EQ(seen, "000000 7; 000001 failed; floor-1 8; ");
+  const StudyInfo info = store->study(made.number);
+  EXPECT_EQ(info.name, "one");
+  EXPECT_EQ(info.paths.root, directory / "jobs" / "one");
+  EXPECT_EQ(info.end, 3);
+  EXPECT_EQ(info.spec.noise_floor_replicates, 1);
 }
 
 TEST_F(StoreTest, ExtendingLeavesWhatIsThere) {
   const Job made = add("one", 2, 1);
-  while (const auto claim = store->claim(lease)) store->accept(*claim, result(1));
+  while (const auto claim = store->claim()) store->accept(*claim, result(1));
   store->finish(made.number, JobState::successful, "");
   EXPECT_TRUE(store->extend(made.number, 4));
   EXPECT_EQ(job("one").planned, 4);
   EXPECT_EQ(job("one").done, 2);
   EXPECT_FALSE(job("one").finished);
-  EXPECT_EQ(store->claim(lease)->run.index, 2);
-  EXPECT_EQ(store->claim(lease)->run.index, 3);
-  EXPECT_FALSE(store->claim(lease));
+  EXPECT_EQ(store->claim()->run.index, 2);
+  EXPECT_EQ(store->claim()->run.index, 3);
+  EXPECT_FALSE(store->claim());
 }
 
 TEST_F(StoreTest, ADismissedJobIsNotExtended) {
@@ -240,7 +290,7 @@ TEST_F(StoreTest, ADismissedJobIsNotExtended) {
   store->extend(made.number, 5);
   EXPECT_EQ(job("one").state, JobState::dismissed);
   EXPECT_EQ(job("one").planned, 1);
-  EXPECT_FALSE(store->claim(lease));
+  EXPECT_FALSE(store->claim());
 }
 
 TEST_F(StoreTest, AKeyIsRememberedWithTheJobOrNeither) {
@@ -297,11 +347,11 @@ TEST_F(StoreTest, JobsAreListedByTheTimeOfTheirCreation) {
 
 TEST_F(StoreTest, JobsAreListedByTheirDuration) {
   const Job ended = add("ended", 1);
-  store->accept(*store->claim(lease), result(1));
+  store->accept(*store->claim(), result(1));
   now += 3000;
   store->finish(ended.number, JobState::successful, "");
   add("running", 1);
-  store->claim(lease);
+  store->claim();
   add("accepted", 1);
   now += 5000;
   const auto found = [&](std::optional<Milliseconds> least, std::optional<Milliseconds> most) {
@@ -317,7 +367,7 @@ TEST_F(StoreTest, JobsAreListedByTheirDuration) {
 
 TEST_F(StoreTest, RealizationsAreFoundByTheirMeasure) {
   const Job made = add("one", 5);
-  for (double zone = 10; const auto claim = store->claim(lease); zone += 1) store->accept(*claim, result(zone));
+  for (double zone = 10; const auto claim = store->claim(); zone += 1) store->accept(*claim, result(zone));
   const auto found = store->runs(made.number, {.least = 11.0, .below = 13.0});
   ASSERT_EQ(found.size(), 2u);
   EXPECT_EQ(found[0].key.index, 1);
@@ -365,13 +415,13 @@ TEST_F(StoreTest, WhatIsCommittedIsOnTheDisk) {
 
 TEST_F(StoreTest, ADatabaseFromBeforeAMeasureGetsItsColumn) {
   add("one", 1);
-  const Claim claim = *store->claim(lease);
+  const Claim claim = *store->claim();
   ASSERT_TRUE(store->accept(claim, result(7.5)));
   store.reset();
   SQLite::Database((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE)
       .exec("ALTER TABLE runs DROP COLUMN front_mass_999_m");
   store = open();
-  const auto run = store->run(claim.run);
+  const auto run = store->run(claim.study, claim.key);
   ASSERT_TRUE(run && run->result);
   EXPECT_EQ(run->result->measures.influence_zone, 7.5);
   EXPECT_EQ(run->result->measures.front_mass_999, 0.0);

@@ -116,6 +116,7 @@ int main(int argc, char** argv) {
   provenance.seed = std::stoull(given.at("--seed"));
   provenance.case_hash = "0123456789abcdef";
   provenance.realization = what == "wrong" ? 77 : std::stoll(index);
+  if (replicate) provenance.perturbation = std::stod(given.at("--perturbation"));
   const double at = replicate ? 1e3 * std::stod(given.at("--perturbation")) : std::stod(index);
   talus::fixtures::write(out / "snapshots.vtkhdf", "profile of " + name);
   talus::fixtures::write(out / "result.tmp", talus::result_json(result(name, at), provenance).dump());

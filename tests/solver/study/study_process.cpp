@@ -3,10 +3,10 @@
 #include <cstdlib>
 
 #include "studies.hpp"
-#include "study/driver.hpp"
+#include "study/run_study.hpp"
 
 int main(int argc, char** argv) {
-  talus::DriverOptions options;
+  talus::RunStudyOptions options;
   options.workers = std::atoi(argv[3]);
   options.program.assign(argv + 4, argv + argc);
   options.poll = std::chrono::milliseconds(2);

@@ -23,7 +23,7 @@ const Progress half{.planned = 8,
 TEST(Progress, SaysWhereTheStudyStands) {
   EXPECT_EQ(progress_line({.planned = 8}), "0/8 done, 0 failed, 0 running");
   // 6 runs in 60 s: 360 an hour; 4 are left: 40 s.
-  EXPECT_EQ(progress_line({.planned = 8, .running = 4, .waits = "waits for rain"}),
+  EXPECT_EQ(progress_line({.planned = 8, .running = 4, .pending_reason = "waits for rain"}),
             "0/8 done, 0 failed, 4 running, waits for rain");
   EXPECT_EQ(progress_line(half), "3/8 done, 1 failed, 2 running, 360/h, 40 s left, mean 34.12 +/- 0.50 m");
   EXPECT_FALSE(time_left({.planned = 8}));

@@ -1,6 +1,6 @@
 #include "studies.hpp"
-#include "study/driver.hpp"
 #include "study/publish.hpp"
+#include "study/run_study.hpp"
 #include "study/summary.hpp"
 #include "support/error.hpp"
 

@@ -126,13 +126,3 @@ TEST(Summary, SaysWhatALatinHypercubeMeansForIntervals) {
   EXPECT_NE(study["notes"]["sampling"].get<std::string>().find("conservative"), std::string::npos);
   EXPECT_EQ(study["provenance"]["sampling"], "latin_hypercube");
 }
-
-TEST(Summary, TooManyFailedIsAShareOfThoseMade) {
-  Plan p = plan(1000);
-  p.study.max_failed_share = 0.25;
-  std::vector<Record> runs{failed(0, "x"), done(1, 1.0), done(2, 1.0), done(3, 1.0)};
-  EXPECT_FALSE(too_many_failed(p, runs));
-  runs.pop_back();
-  EXPECT_TRUE(too_many_failed(p, runs));
-  EXPECT_FALSE(too_many_failed(p, {}));
-}

@@ -1,9 +1,7 @@
 #pragma once
-// Runs a study: a process for each realization, the books kept so that it can be killed at any time and goes on by the
-// same command.
+// `talus study`: one study in one directory. It can be killed at any time and goes on by the same command.
 
 #include <chrono>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "executor/executor.hpp"
+#include "study/outcome.hpp"
 #include "study/paths.hpp"
 #include "study/plan.hpp"
 #include "study/progress.hpp"
@@ -19,17 +18,17 @@
 namespace talus {
 
 /// How to run a study; none of it changes a result.
-struct DriverOptions {
+struct RunStudyOptions {
   std::vector<std::string> program;  ///< called as `program... CASE --realization I ...`: the arguments of `talus run`
   int workers = 1;                   ///< processes at a time, >= 1; without `make_executor`
   std::function<std::unique_ptr<executor::Executor>(const StudyPaths&)> make_executor;  ///< unset: processes here
   int threads = 1;                                                                      ///< of each, >= 1
   std::int64_t first = 0;            ///< realizations first <= i < last are run here, the others elsewhere
   std::optional<std::int64_t> last;  ///< unset: the planned number
-  int attempts = 2;                  ///< of a run that breaks off, before it has failed; >= 1
+  int attempts = default_attempts;   ///< crashes of a run before it has failed, >= 1
   bool retry_failed = false;         ///< run again what has failed before
-  std::function<int()>
-      interrupts;  ///< how often a person has asked to stop: once, workers checkpoint; twice, they are killed
+  /// How often a person has asked to stop: once, workers checkpoint; twice, they are killed.
+  std::function<int()> interrupts;
   std::function<void(const Progress&)> report;   ///< called often
   std::function<void(const std::string&)> note;  ///< called when something happens that a person should know
   std::chrono::milliseconds poll{25};
@@ -42,17 +41,13 @@ struct DriverOptions {
 /// @throws ConfigError, IoError as run_study
 void prepare_study(const Plan& plan, const nlohmann::ordered_json& resolved, const std::filesystem::path& directory);
 
-enum class Outcome { finished, stopped_early, interrupted, too_many_failed };
+enum class StudyEnd { finished, stopped_early, interrupted, too_many_failed };
 
-/// Runs what `plan` asks for and `directory` does not hold yet.
-///
-/// A worker that reports a divergence or an internal error, or that is killed `attempts` times, is a failed
-/// realization: recorded, kept in the denominator, not drawn again. A worker that finds the case bad or the disk full
-/// ends the study instead: nothing is recorded, and the same command goes on.
+/// Runs what `plan` asks for and `directory` does not hold yet. What the end of a process means: outcome_of().
 /// @param resolved  LoadedCase::resolved of `plan`; what the workers read
 /// @throws ConfigError when the directory holds another study, or a worker refuses the case
-/// @throws IoError when the directory cannot be claimed or written, or a worker cannot write
-Outcome run_study(const Plan& plan, const nlohmann::ordered_json& resolved, const std::filesystem::path& directory,
-                  const DriverOptions& options);
+/// @throws IoError when the directory cannot be claimed or written, or a worker cannot write; the same command goes on
+StudyEnd run_study(const Plan& plan, const nlohmann::ordered_json& resolved, const std::filesystem::path& directory,
+                   const RunStudyOptions& options);
 
 }  // namespace talus

@@ -10,7 +10,7 @@
 #include "executor/process.hpp"
 #include "studies.hpp"
 #include "study/csv.hpp"
-#include "study/driver.hpp"
+#include "study/run_study.hpp"
 #include "support/error.hpp"
 
 using namespace talus;
@@ -27,7 +27,7 @@ struct Study {
   fs::path out = directory / "study";
   fs::path diary = directory / "diary";
   Plan plan;
-  DriverOptions options;
+  RunStudyOptions options;
   std::string script;
   int milliseconds = 5;
   std::vector<std::string> notes;
@@ -39,9 +39,10 @@ struct Study {
     options.poll = std::chrono::milliseconds(1);
     options.note = [this](const std::string& text) { notes.push_back(text); };
     plan.study.max_failed_share = 1.0;
+    options.attempts = 2;
   }
   std::vector<std::string> program() const { return {FAKE_RUN, diary.string(), std::to_string(milliseconds), script}; }
-  Outcome run() {
+  StudyEnd run() {
     options.program = program();
     return run_study(plan, {{"title", "A slope"}, {"study", {{"realizations", plan.study.realizations}}}}, out,
                      options);
@@ -79,10 +80,10 @@ void wait_until(Condition condition) {
 
 }  // namespace
 
-TEST(Driver, RunsEveryRealizationOnce) {
+TEST(RunStudy, RunsEveryRealizationOnce) {
   Study s(12);
   s.plan.study.noise_floor_replicates = 3;
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_EQ(s.records().size(), 12u);
   for (int i = 0; i < 12; ++i) EXPECT_EQ(s.count("begin " + std::to_string(i) + " fresh"), 1);
   for (const char* e : {"1e-06", "2e-06", "3e-06"}) EXPECT_EQ(s.count(std::string("begin floor") + e), 1) << e;
@@ -95,7 +96,7 @@ TEST(Driver, RunsEveryRealizationOnce) {
   EXPECT_EQ(json::parse(content(s.out / "case.resolved.json"))["study"]["realizations"], 12);
 }
 
-TEST(Driver, ResultsDoNotDependOnTheWorkers) {
+TEST(RunStudy, ResultsDoNotDependOnTheWorkers) {
   Study one(15, "4=diverge"), many(15, "4=diverge");
   one.plan.study.noise_floor_replicates = many.plan.study.noise_floor_replicates = 2;
   one.options.workers = 1;
@@ -109,7 +110,7 @@ TEST(Driver, ResultsDoNotDependOnTheWorkers) {
   }
 }
 
-TEST(Driver, KeepsTheFirstAndTheFarthestProfile) {
+TEST(RunStudy, KeepsTheFirstAndTheFarthestProfile) {
   Study s(9);
   s.run();
   const std::int64_t farthest = s.summary()["extremes"]["farthest_realization"];
@@ -119,26 +120,26 @@ TEST(Driver, KeepsTheFirstAndTheFarthestProfile) {
   EXPECT_EQ(json::parse(content(s.out / "profiles" / "worst.json"))["realization"], farthest);
 }
 
-TEST(Driver, AFinishedStudyIsNotRunAgain) {
+TEST(RunStudy, AFinishedStudyIsNotRunAgain) {
   Study s(5);
   s.run();
   const std::string csv = content(s.out / "realizations.csv"), diary = content(s.diary);
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_EQ(content(s.diary), diary);
   EXPECT_EQ(content(s.out / "realizations.csv"), csv);
 }
 
-TEST(Driver, MoreRealizationsExtendIt) {
+TEST(RunStudy, MoreRealizationsExtendIt) {
   Study s(5), whole(9);
   s.run();
   s.plan.study.realizations = 9;
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   whole.run();
   EXPECT_EQ(s.count("begin"), 9);
   EXPECT_EQ(content(s.out / "study.json"), content(whole.out / "study.json"));
 }
 
-TEST(Driver, AnotherStudyIsRefused) {
+TEST(RunStudy, AnotherStudyIsRefused) {
   Study s(5);
   s.run();
   s.plan.seed = 43;
@@ -148,14 +149,14 @@ TEST(Driver, AnotherStudyIsRefused) {
   EXPECT_THROW(s.run(), ConfigError);
 }
 
-TEST(Driver, FailuresAreRecordedAndStayInTheDenominator) {
+TEST(RunStudy, FailuresAreRecordedAndStayInTheDenominator) {
   Study s(8, "2=diverge,5=internal,6=no-result");
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   const std::vector<Record> all = s.records();
   ASSERT_EQ(all.size(), 8u);
   EXPECT_EQ(all[2].reason, "diverged: diverged at step 12, particle 7");
   EXPECT_EQ(all[5].reason, "exit code 1: starting");
-  EXPECT_EQ(all[6].reason, "it ended well but left no readable result: starting");
+  EXPECT_EQ(all[6].reason, "it ended well but left no readable result, 2 times: starting");
   const json why = json::parse(content(s.out / "runs" / "000002.failed.json"));
   EXPECT_EQ(why["exit_code"], 4);
   EXPECT_TRUE(why["signal"].is_null());
@@ -166,21 +167,21 @@ TEST(Driver, FailuresAreRecordedAndStayInTheDenominator) {
   EXPECT_EQ(s.count("begin 2 "), 1);  // never drawn again by itself
 }
 
-TEST(Driver, FailedOnesAreTriedAgainWhenAsked) {
+TEST(RunStudy, FailedOnesAreTriedAgainWhenAsked) {
   Study s(6, "2=diverge");
   s.run();
   s.script = "ok";
   s.options.retry_failed = true;
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_EQ(s.count("begin 2 "), 2);
   EXPECT_EQ(s.count("begin"), 7);
   EXPECT_EQ(s.summary()["realizations"]["failed"], 0);
   EXPECT_FALSE(fs::exists(s.out / "runs" / "000002.failed.json"));
 }
 
-TEST(Driver, AKilledWorkerIsTriedOnceMore) {
+TEST(RunStudy, AKilledWorkerIsTriedAgain) {
   Study s(5, "1=kill-once,3=kill,4=stop-once");
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_EQ(s.count("begin 1 "), 2);
   EXPECT_EQ(s.count("begin 3 "), 2);
   EXPECT_EQ(s.count("begin 4 resumed"), 1);
@@ -191,26 +192,26 @@ TEST(Driver, AKilledWorkerIsTriedOnceMore) {
   EXPECT_EQ(json::parse(content(s.out / "runs" / "000003.failed.json"))["signal"], 9);
 }
 
-TEST(Driver, ABadCheckpointIsNotTheEnd) {
+TEST(RunStudy, ABadCheckpointIsNotTheEnd) {
   Study s(4, "2=bad-checkpoint");
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_EQ(s.count("begin 2 fresh"), 2);
   EXPECT_EQ(s.count("begin 2 resumed"), 1);
   EXPECT_EQ(s.summary()["realizations"]["done"], 4);
 }
 
-TEST(Driver, TooManyFailuresEndIt) {
+TEST(RunStudy, TooManyFailuresEndIt) {
   Study s(40, "0=diverge,1=diverge,2=diverge,3=diverge,4=diverge");
   s.plan.study.max_failed_share = 0.1;
   s.options.workers = 1;
-  EXPECT_EQ(s.run(), Outcome::too_many_failed);
+  EXPECT_EQ(s.run(), StudyEnd::too_many_failed);
   EXPECT_EQ(s.summary()["realizations"]["failed"], 5);
   EXPECT_LT(s.count("begin"), 8);
-  EXPECT_EQ(s.run(), Outcome::too_many_failed);
+  EXPECT_EQ(s.run(), StudyEnd::too_many_failed);
   EXPECT_LT(s.count("begin"), 8);
 }
 
-TEST(Driver, ABadCaseOrAFullDiskEndsItWithoutABlotInTheBooks) {
+TEST(RunStudy, ABadCaseOrAFullDiskEndsItWithoutARecord) {
   Study bad(6, "2=bad-case");
   try {
     bad.run();
@@ -220,6 +221,7 @@ TEST(Driver, ABadCaseOrAFullDiskEndsItWithoutABlotInTheBooks) {
   }
   Study full(6, "2=full");
   full.options.workers = 1;
+  full.options.attempts = 1;
   try {
     full.run();
     FAIL();
@@ -227,26 +229,26 @@ TEST(Driver, ABadCaseOrAFullDiskEndsItWithoutABlotInTheBooks) {
     EXPECT_NE(std::string(e.what()).find("No space left on device"), std::string::npos);
   }
   full.script = "ok";
-  EXPECT_EQ(full.run(), Outcome::finished);
+  EXPECT_EQ(full.run(), StudyEnd::finished);
   EXPECT_EQ(full.count("begin 0 "), 1);
   EXPECT_EQ(full.count("begin 2 "), 2);
   EXPECT_EQ(full.summary()["realizations"]["done"], 6);
 }
 
-TEST(Driver, AResultOfSomethingElseIsNeverTaken) {
+TEST(RunStudy, AResultOfSomethingElseIsNeverTaken) {
   Study s(4, "2=wrong");
   EXPECT_THROW(s.run(), IoError);
 }
 
-TEST(Driver, StopsEarlyAtTheSameRealizationWhateverTheWorkers) {
+TEST(RunStudy, StopsEarlyAtTheSameRealizationWhateverTheWorkers) {
   // While number 8 is slow, the others run far ahead of where the study will stop.
   Study one(200, "8=slow"), many(200, "8=slow");
   one.plan.study.stop_half_width = many.plan.study.stop_half_width = 0.25;
   one.plan.study.noise_floor_replicates = many.plan.study.noise_floor_replicates = 2;
   one.options.workers = 1;
   many.options.workers = 9;
-  EXPECT_EQ(one.run(), Outcome::stopped_early);
-  EXPECT_EQ(many.run(), Outcome::stopped_early);
+  EXPECT_EQ(one.run(), StudyEnd::stopped_early);
+  EXPECT_EQ(many.run(), StudyEnd::stopped_early);
   EXPECT_GT(many.count("end "), one.count("end "));
   EXPECT_EQ(content(one.out / "study.json"), content(many.out / "study.json"));
   const json n = one.summary()["realizations"];
@@ -260,19 +262,19 @@ TEST(Driver, StopsEarlyAtTheSameRealizationWhateverTheWorkers) {
   EXPECT_EQ(one.summary()["noise_floor"]["replicates_done"], 2);
 }
 
-TEST(Driver, AskedToStopItCheckpointsAndGoesOn) {
+TEST(RunStudy, AskedToStopItCheckpointsAndGoesOn) {
   Study s(12, "1=slow");  // still in mid-run whenever the others make the study stop
   s.milliseconds = 40;
   int asked = 0;
   s.options.interrupts = [&] { return asked; };
   s.options.report = [&](const Progress& p) { asked = p.done >= 3 ? 1 : 0; };
-  EXPECT_EQ(s.run(), Outcome::interrupted);
+  EXPECT_EQ(s.run(), StudyEnd::interrupted);
   const int ended = s.count("end");
   EXPECT_LT(ended, 12);
   EXPECT_EQ(static_cast<int>(s.records().size()), ended);
   asked = 0;
   s.options.report = {};
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_GE(s.count("begin ") - s.count("end "), 1);  // those stopped half way
   int resumed = 0;
   for (int i = 0; i < 12; ++i) resumed += s.count("begin " + std::to_string(i) + " resumed");
@@ -280,28 +282,28 @@ TEST(Driver, AskedToStopItCheckpointsAndGoesOn) {
   EXPECT_EQ(s.count("end "), 12);
 }
 
-TEST(Driver, AShareOfTheRealizationsCanBeRunElsewhere) {
+TEST(RunStudy, AShareOfTheRealizationsCanBeRunElsewhere) {
   Study s(10);
   s.plan.study.noise_floor_replicates = 2;
   s.options.first = 4;
   s.options.last = 7;
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_EQ(s.count("begin"), 3);
   EXPECT_EQ(s.summary()["realizations"]["missing"].dump(), "[[0,3],[7,9]]");
   EXPECT_EQ(s.summary()["realizations"]["planned"], 10);
 }
 
-TEST(Driver, TwoStudiesDoNotShareADirectory) {
+TEST(RunStudy, TwoStudiesDoNotShareADirectory) {
   Study s(3);
   s.milliseconds = 20;
   bool tried = false;
   s.options.report = [&](const Progress&) {
     if (std::exchange(tried, true)) return;
-    DriverOptions other = s.options;
+    RunStudyOptions other = s.options;
     other.report = {};
     EXPECT_THROW(run_study(s.plan, {}, s.out, other), IoError);
   };
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_TRUE(tried);
   EXPECT_EQ(s.count("begin"), 3);
 }
@@ -321,12 +323,12 @@ void kill_and_finish(Study& s, int begun) {
     wait_until([&] { return study.poll().has_value(); });
     EXPECT_EQ(study.poll()->signal, SIGKILL);
   }
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
 }
 
 }  // namespace
 
-TEST(Driver, SurvivesKill9) {
+TEST(RunStudy, SurvivesKill9) {
   Study s(20), whole(20);
   s.plan.study.noise_floor_replicates = whole.plan.study.noise_floor_replicates = 2;
   s.plan.study.max_failed_share = whole.plan.study.max_failed_share = 0.1;
@@ -338,7 +340,7 @@ TEST(Driver, SurvivesKill9) {
   EXPECT_LE(s.most_ends(), 1);  // none that had ended was run again
 }
 
-TEST(Driver, AdoptsWhatItsOrphansFinish) {
+TEST(RunStudy, AdoptsWhatItsOrphansFinish) {
   Study s(12, "orphan");
   s.plan.study.noise_floor_replicates = 2;
   s.plan.study.max_failed_share = 0.1;
@@ -348,11 +350,11 @@ TEST(Driver, AdoptsWhatItsOrphansFinish) {
   EXPECT_NE(s.text_of_notes().find("taken over"), std::string::npos);
 }
 
-TEST(Driver, ADamagedResultIsRunAgain) {
+TEST(RunStudy, ADamagedResultIsRunAgain) {
   Study s(4);
   s.run();
   write(s.out / "runs" / "000002.json", "{\"influence_zone_m\": 3");
-  EXPECT_EQ(s.run(), Outcome::finished);
+  EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_EQ(s.count("begin 2 "), 2);
   EXPECT_EQ(s.count("begin "), 5);
 }

@@ -1,0 +1,158 @@
+#include "study/directory_store.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "support/files.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The run of a file name: "000012.json" and "000012.failed.json" are of realization 12.
+std::optional<RunKey> run_of_file(const std::string& name, const std::string& ending, RunKind kind) {
+  if (!name.ends_with(ending)) return std::nullopt;
+  std::optional<RunKey> key = run_of_work_name(name.substr(0, name.size() - ending.size()));
+  if (!key || key->is_replicate()) return std::nullopt;
+  key->kind = kind;
+  return key;
+}
+
+}  // namespace
+
+std::vector<Record> read_records(const StudyPaths& paths, RunKind kind, const StudyIdentity& identity) {
+  std::vector<Record> records;
+  if (!fs::exists(paths.results(kind))) return records;  // nothing has been run yet
+  for (const auto& entry : fs::directory_iterator(paths.results(kind))) {
+    const std::string name = entry.path().filename().string();
+    if (const auto failed = run_of_file(name, ".failed.json", kind)) {
+      if (auto reason = read_failure(entry.path()))
+        records.push_back({.index = failed->index, .reason = std::move(*reason)});
+    } else if (const auto done = run_of_file(name, ".json", kind)) {
+      if (auto record = read_result(entry.path(), *done, identity)) records.push_back(std::move(*record));
+    }
+  }
+  // Where a run has both, it was retried: the result counts.
+  std::sort(records.begin(), records.end(),
+            [](const Record& a, const Record& b) { return a.index != b.index ? a.index < b.index : a.done > b.done; });
+  const auto same = [](const Record& a, const Record& b) { return a.index == b.index; };
+  records.erase(std::unique(records.begin(), records.end(), same), records.end());
+  return records;
+}
+
+bool DirectoryStore::Records::contains(std::int64_t index) const {
+  if (new_.contains(index)) return true;
+  const auto at = std::lower_bound(old_.begin(), old_.end(), index,
+                                   [](const Record& record, std::int64_t i) { return record.index < i; });
+  return at != old_.end() && at->index == index;
+}
+
+const std::vector<Record>& DirectoryStore::Records::in_order() {
+  if (new_.empty()) return old_;
+  const auto middle = std::ssize(old_);
+  for (auto& [index, record] : new_) old_.push_back(std::move(record));
+  new_.clear();
+  std::inplace_merge(old_.begin(), old_.begin() + middle, old_.end(),
+                     [](const Record& a, const Record& b) { return a.index < b.index; });
+  return old_;
+}
+
+DirectoryStore::DirectoryStore(StudyPaths paths, const Plan& plan, std::int64_t first, std::int64_t end)
+    : info_{.name = {},
+            .paths = std::move(paths),
+            .identity = {.seed = plan.seed, .case_hash = plan.case_hash},
+            .spec = plan.study,
+            .first = first,
+            .end = end} {
+  runs_.assign(read_records(info_.paths, RunKind::realization, info_.identity));
+  replicates_.assign(read_records(info_.paths, RunKind::replicate, info_.identity));
+}
+
+void DirectoryStore::forget_failures() {
+  for (const RunKind kind : {RunKind::realization, RunKind::replicate}) {
+    Records& all = records({.kind = kind});
+    std::vector<Record> done;
+    for (const Record& record : all.in_order())
+      if (record.done)
+        done.push_back(record);
+      else
+        fs::remove(info_.paths.failure({.kind = kind, .index = record.index}));
+    all.assign(std::move(done));
+  }
+}
+
+bool DirectoryStore::runs_here(const RunKey& key) const {
+  if (key.is_replicate()) return info_.first == 0 && !dropped_replicates_;
+  return key.index >= info_.first && key.index < info_.end && !dropped_realizations_;
+}
+
+std::optional<Claim> DirectoryStore::claim() {
+  if (!returned_.empty()) {
+    Claim claim = returned_.front();
+    returned_.pop_front();
+    ++claim.attempt;
+    claimed_[claim.key] = claim.attempt;
+    return claim;
+  }
+  const std::int64_t replicates = info_.spec.noise_floor_replicates;
+  for (const std::int64_t last = replicates + info_.end; rank_ < last;) {
+    const RunKey key = run_of_rank(rank_++, replicates);
+    if (!runs_here(key) || records(key).contains(key.index)) continue;
+    claimed_[key] = 1;
+    return Claim{.key = key};
+  }
+  return std::nullopt;
+}
+
+void DirectoryStore::visit_records(StudyNumber, const Visitor& visit) {
+  for (const RunKind kind : {RunKind::realization, RunKind::replicate})
+    for (const Record& record : records({.kind = kind}).in_order())
+      visit({.kind = kind, .index = record.index},
+            record.done ? std::optional(record.measures.influence_zone) : std::nullopt);
+}
+
+bool DirectoryStore::is_current(const Claim& claim) {
+  const auto at = claimed_.find(claim.key);
+  return at != claimed_.end() && at->second == claim.attempt;
+}
+
+bool DirectoryStore::end_claim(const Claim& claim) {
+  const bool current = is_current(claim);
+  if (current) claimed_.erase(claim.key);
+  return current;
+}
+
+bool DirectoryStore::accept(const Claim& claim, const Record& record) {
+  if (!end_claim(claim)) return false;
+  records(claim.key).add(record);
+  return true;
+}
+
+bool DirectoryStore::fail(const Claim& claim, const Failure& failure) {
+  if (!end_claim(claim)) return false;
+  records(claim.key).add({.index = claim.key.index, .reason = failure.reason});
+  return true;
+}
+
+bool DirectoryStore::give_back(const Claim& claim, bool crashed) {
+  if (!end_claim(claim)) return false;
+  Claim returned = claim;
+  returned.crashes += crashed ? 1 : 0;
+  returned_.push_front(returned);
+  return true;
+}
+
+void DirectoryStore::drop_open_runs(StudyNumber, bool replicates_too) {
+  dropped_realizations_ = true;
+  dropped_replicates_ = dropped_replicates_ || replicates_too;
+  std::erase_if(returned_, [&](const Claim& claim) { return !runs_here(claim.key); });
+  std::erase_if(claimed_, [&](const auto& claimed) { return !runs_here(claimed.first); });
+}
+
+void DirectoryStore::abort(StudyNumber, bool bad_case, const std::string& why) {
+  if (bad_case) throw ConfigError("", why);
+  throw IoError(why);
+}
+
+}  // namespace talus

@@ -1,0 +1,73 @@
+#include "study/record.hpp"
+
+#include "study/run_file.hpp"
+#include "support/files.hpp"
+#include "support/json.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t max_result_bytes = std::size_t{1} << 20;
+
+/// Puts a second name on a file, or a copy where the file system has no links; by rename.
+void link_or_copy(const fs::path& from, const fs::path& to) {
+  const fs::path temporary = to.parent_path() / (to.filename().string() + ".tmp-profile");
+  fs::remove(temporary);
+  std::error_code error;
+  fs::create_hard_link(from, temporary, error);
+  if (error) fs::copy_file(from, temporary);
+  fs::rename(temporary, to);
+}
+
+}  // namespace
+
+std::optional<Record> read_result(const fs::path& file, const RunKey& key, const StudyIdentity& of) {
+  if (!fs::exists(file)) return std::nullopt;
+  std::optional<RunFile> run;
+  try {
+    run = read_run_file(file, key.index);
+  } catch (const IoError&) {
+    return std::nullopt;
+  }
+  if (run->seed != of.seed || run->case_hash != of.case_hash || run->realization != key.drawn_realization() ||
+      run->perturbed != key.is_replicate())
+    throw ForeignResult(file.string() +
+                        " is of another run or study (seed, case hash, realization or perturbation differ); remove it");
+  if (run->interrupted) return std::nullopt;
+  return std::move(run->record);
+}
+
+void write_failure(const StudyPaths& paths, const RunKey& key, const Failure& failure, std::int64_t attempts,
+                   std::uint64_t seed) {
+  const Json json = {{"job", run_name(key)},
+                     {"reason", failure.reason},
+                     {"exit_code", failure.exit_code ? Json(*failure.exit_code) : Json()},
+                     {"signal", failure.signal ? Json(*failure.signal) : Json()},
+                     {"attempts", attempts},
+                     {"log_tail", failure.log_tail},
+                     {"rerun", replay_command(key, seed, paths.resolved_case().string())}};
+  write_file_atomically(paths.failure(key), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+std::optional<std::string> read_failure(const fs::path& file) {
+  try {
+    return read_json(file, max_result_bytes).at("reason").get<std::string>();
+  } catch (const nlohmann::json::exception&) {
+  } catch (const IoError&) {
+  }
+  return std::nullopt;
+}
+
+void keep_profiles(const StudyPaths& paths, const RunKey& key, double influence_zone, bool farthest) {
+  const fs::path snapshots = paths.work(key) / "snapshots.vtkhdf";
+  if (key.is_replicate() || !fs::exists(snapshots)) return;
+  if (key.index == 0) link_or_copy(snapshots, paths.profiles() / "first.vtkhdf");
+  if (!farthest) return;
+  link_or_copy(snapshots, paths.profiles() / "worst.vtkhdf");
+  write_file_atomically(paths.profiles() / "worst.json",
+                        Json{{"realization", key.index}, {"influence_zone_m", influence_zone}}.dump(2) + "\n");
+}
+
+}  // namespace talus
