@@ -223,7 +223,7 @@ TEST_F(StoreTest, RetryTakesOnlyTheFailedOnes) {
   EXPECT_EQ(store->retry_failed(made.number), 1);
   EXPECT_EQ(job("one").state, JobState::running);
   EXPECT_EQ(job("one").failed, 0);
-  EXPECT_EQ(store->claim()->run.index, 1);
+  EXPECT_EQ(store->claim()->key.index, 1);
   EXPECT_FALSE(store->claim());
 }
 
@@ -279,8 +279,8 @@ TEST_F(StoreTest, ExtendingLeavesWhatIsThere) {
   EXPECT_EQ(job("one").planned, 4);
   EXPECT_EQ(job("one").done, 2);
   EXPECT_FALSE(job("one").finished);
-  EXPECT_EQ(store->claim()->run.index, 2);
-  EXPECT_EQ(store->claim()->run.index, 3);
+  EXPECT_EQ(store->claim()->key.index, 2);
+  EXPECT_EQ(store->claim()->key.index, 3);
   EXPECT_FALSE(store->claim());
 }
 
