@@ -6,8 +6,8 @@
 namespace talus {
 
 double initial_pressure(const FlowConstants& k, const Soil& soil, std::size_t i) {
-  const double p = k.laws[static_cast<std::size_t>(soil.material[i])].eos.pressure(soil.rho[i]);
-  return k.numerics.tension_cutoff ? without_tension(p) : p;
+  const double p = k.soils[static_cast<std::size_t>(soil.material[i])].eos.pressure(soil.rho[i]);
+  return k.numerics.tension_cutoff ? apply_tension_cutoff(p) : p;
 }
 
 std::unique_ptr<Flow> make_flow(FlowConstants constants, Soil& soil) {

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <cmath>
-
 namespace talus {
+
+/// Exponent chi of the equation of state [-]                              [Z20] Eq. 3
+inline constexpr double eos_exponent = 7.0;
 
 /// p = B ((rho/rho0)^chi - 1), chi = 7, B = rho0 c_s^2 / chi              [Z20] Eq. 3
 ///
@@ -12,17 +13,18 @@ struct EquationOfState {
   double rho0;  ///< reference density [kg/m3], > 0
   double B;     ///< stiffness         [Pa],    > 0
 
-  static EquationOfState weakly_compressible(double rho0, double c_s) { return {rho0, rho0 * c_s * c_s / 7.0}; }
-
-  double pressure(double rho) const {
-    const double q = rho / rho0, q2 = q * q, q4 = q2 * q2;
-    return B * (q4 * q2 * q - 1.0);
+  /// @param c_s  speed of sound at the reference density [m/s], > 0
+  static EquationOfState weakly_compressible(double rho0, double c_s) {
+    return {rho0, rho0 * c_s * c_s / eos_exponent};
   }
-  /// Inverse of pressure(); p > -B.
-  double density(double p) const { return rho0 * std::pow(1.0 + p / B, 1.0 / 7.0); }
+
+  /// @param rho  density [kg/m3]; @returns pressure [Pa]
+  double pressure(double rho) const;
+  /// Inverse of pressure(); p > -B [Pa].
+  double density(double p) const;
 };
 
-/// Loose soil carries no tension.
-constexpr double without_tension(double p) { return p > 0.0 ? p : 0.0; }
+/// Loose soil carries no tension: negative pressure is cut off.
+double apply_tension_cutoff(double p);
 
 }  // namespace talus

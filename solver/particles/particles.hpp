@@ -33,7 +33,6 @@ struct Soil {
   std::size_t size() const { return x.size(); }
   Vec2 position(std::size_t i) const { return {x[i], y[i]}; }
   Vec2 velocity(std::size_t i) const { return {vx[i], vy[i]}; }
-  Dev t(std::size_t i) const { return {txx[i], tyy[i], txy[i]}; }
   Sym2 stress(std::size_t i) const { return {sxx[i], syy[i], sxy[i]}; }
 };
 
@@ -84,7 +83,6 @@ struct WallParticles {
   std::size_t size() const { return x.size(); }
   Vec2 position(std::size_t j) const { return {x[j], y[j]}; }
   Vec2 normal(std::size_t j) const { return {nx[j], ny[j]}; }
-  Sym2 stress(std::size_t j) const { return {sxx[j], syy[j], sxy[j]}; }
 };
 
 /// The arrays of the walls that evaluations write.

@@ -53,15 +53,15 @@ FlowConstants flow_constants(const Model& model) {
           model.rheology,
           model.numerics,
           model.walls,
-          point_laws(model.materials, model.rheology, c_s)};
+          constitutive_parameters(model.materials, model.rheology, c_s)};
 }
 
 StepBounds step_bounds(const Model& model, const FlowConstants& k) {
   StepBounds bounds{model.numerics.cfl, k.h, k.c_s, 0.0};
-  for (const PointLaw& law : k.laws) {
+  for (const ConstitutiveParameters& law : k.soils) {
     if (model.rheology.yield == Yield::elastic)
       bounds.c = std::max(bounds.c, std::sqrt(k.c_s * k.c_s + 4.0 / 3.0 * law.G / law.eos.rho0));
-    bounds.nu = std::max(bounds.nu, law.bingham.eta / law.eos.rho0);
+    bounds.nu = std::max(bounds.nu, law.eta / law.eos.rho0);
   }
   return bounds;
 }
@@ -88,7 +88,7 @@ Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& p
     const double p = loaded ? overburden(model.slide, model.materials, points[i].x) * std::abs(model.g.y) : 0.0;
     soil.x[i] = points[i].x.x;
     soil.y[i] = points[i].x.y;
-    soil.rho[i] = k.laws[material].eos.density(p);
+    soil.rho[i] = k.soils[material].eos.density(p);
     soil.m[i] = model.materials[material].rho0 * model.dx * model.dx;
     soil.material[i] = points[i].material;
     soil.id[i] = static_cast<std::int32_t>(i);

@@ -2,14 +2,15 @@
 
 namespace talus {
 
-std::vector<PointLaw> point_laws(const std::vector<Material>& materials, const Rheology& rheology, double c_s) {
-  std::vector<PointLaw> laws;
+std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Material>& materials,
+                                                            const Rheology& rheology, double c_s) {
+  std::vector<ConstitutiveParameters> soils;
   for (const Material& m : materials)
-    laws.push_back({EquationOfState::weakly_compressible(m.rho0, c_s),
-                    m.c,
-                    {m.eta, rheology.gamma_dot_min},
-                    rheology.G.value_or(0.1 * m.rho0 * c_s * c_s)});
-  return laws;
+    soils.push_back({.eos = EquationOfState::weakly_compressible(m.rho0, c_s),
+                     .c = m.c,
+                     .eta = m.eta,
+                     .G = rheology.G.value_or(0.1 * m.rho0 * c_s * c_s)});
+  return soils;
 }
 
 }  // namespace talus

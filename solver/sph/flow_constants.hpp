@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "material/bingham.hpp"
 #include "material/equation_of_state.hpp"
 #include "material/material.hpp"
 #include "math/vec2.hpp"
@@ -11,12 +10,12 @@
 
 namespace talus {
 
-/// What the law of a point needs to know of its material.
-struct PointLaw {
+/// What the constitutive models need to know of a material.
+struct ConstitutiveParameters {
   EquationOfState eos;
-  double c;  ///< cohesion [Pa]
-  Bingham bingham;
-  double G;  ///< numerical shear modulus of the elastic law [Pa]
+  double c;    ///< cohesion [Pa]
+  double eta;  ///< viscosity once it has yielded [Pa s]
+  double G;    ///< numerical shear modulus of the elastic law [Pa]
 };
 
 /// Constants of a run that every pair sees.
@@ -28,10 +27,11 @@ struct FlowConstants {
   Rheology rheology;
   Numerics numerics;
   Walls walls;
-  std::vector<PointLaw> laws;  ///< by material
+  std::vector<ConstitutiveParameters> soils;  ///< by material
 };
 
-/// Builds the point laws of `materials`; c_s [m/s].
-std::vector<PointLaw> point_laws(const std::vector<Material>& materials, const Rheology& rheology, double c_s);
+/// @param c_s  speed of sound [m/s]
+std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Material>& materials,
+                                                            const Rheology& rheology, double c_s);
 
 }  // namespace talus

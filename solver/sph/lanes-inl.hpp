@@ -1,5 +1,5 @@
-// Vectors of the pair loops. Included once for every instruction set (Highway's foreach_target), hence the toggled
-// guard.
+// Lanes, the number type of the vectorised loops. Included once for every instruction set (Highway's foreach_target),
+// hence the toggled guard.
 
 #if defined(TALUS_SPH_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TALUS_SPH_LANES_INL
@@ -26,11 +26,41 @@ using HalfD = hn::Half<D>;
 using Doubles = hn::Rebind<double, HalfD>;
 constexpr std::size_t lanes = HWY_LANES(float) < 8 ? HWY_LANES(float) : 8;
 
-HWY_INLINE V set(float value) { return hn::Set(D(), value); }
-HWY_INLINE V set(double value) { return hn::Set(D(), static_cast<float>(value)); }
+/// One value of every particle of a cluster, in single precision. The operations are those of math/number.hpp.
+struct Lanes {
+  V v;
+
+  Lanes() = default;
+  explicit HWY_INLINE Lanes(V value) : v(value) {}
+  explicit HWY_INLINE Lanes(float value) : v(hn::Set(D(), value)) {}
+  explicit HWY_INLINE Lanes(double value) : Lanes(static_cast<float>(value)) {}
+
+  friend HWY_INLINE Lanes operator+(Lanes a, Lanes b) { return Lanes(hn::Add(a.v, b.v)); }
+  friend HWY_INLINE Lanes operator-(Lanes a, Lanes b) { return Lanes(hn::Sub(a.v, b.v)); }
+  friend HWY_INLINE Lanes operator*(Lanes a, Lanes b) { return Lanes(hn::Mul(a.v, b.v)); }
+  friend HWY_INLINE Lanes operator/(Lanes a, Lanes b) { return Lanes(hn::Div(a.v, b.v)); }
+  friend HWY_INLINE Lanes fma(Lanes a, Lanes b, Lanes c) { return Lanes(hn::MulAdd(a.v, b.v, c.v)); }
+  friend HWY_INLINE Lanes fms(Lanes a, Lanes b, Lanes c) { return Lanes(hn::MulSub(a.v, b.v, c.v)); }
+  friend HWY_INLINE Lanes fnma(Lanes a, Lanes b, Lanes c) { return Lanes(hn::NegMulAdd(a.v, b.v, c.v)); }
+  friend HWY_INLINE Lanes sqrt(Lanes a) { return Lanes(hn::Sqrt(a.v)); }
+  friend HWY_INLINE Lanes min(Lanes a, Lanes b) { return Lanes(hn::Min(a.v, b.v)); }
+  friend HWY_INLINE Lanes max(Lanes a, Lanes b) { return Lanes(hn::Max(a.v, b.v)); }
+
+  /// Lanes where a condition holds.
+  struct Mask {
+    M m;
+    friend HWY_INLINE Mask operator&(Mask a, Mask b) { return {hn::And(a.m, b.m)}; }
+    friend HWY_INLINE bool any(Mask a) { return !hn::AllFalse(D(), a.m); }
+    friend HWY_INLINE Lanes select(Mask where, Lanes a, Lanes b) { return Lanes(hn::IfThenElse(where.m, a.v, b.v)); }
+    friend HWY_INLINE Lanes select_or_zero(Mask where, Lanes a) { return Lanes(hn::IfThenElseZero(where.m, a.v)); }
+  };
+  friend HWY_INLINE Mask operator<(Lanes a, Lanes b) { return {hn::Lt(a.v, b.v)}; }
+  friend HWY_INLINE Mask operator>(Lanes a, Lanes b) { return {hn::Gt(a.v, b.v)}; }
+  friend HWY_INLINE Mask operator==(Lanes a, Lanes b) { return {hn::Eq(a.v, b.v)}; }
+};
 
 /// The first `count` of the doubles at `from`, rounded.
-HWY_INLINE V load_doubles(const double* HWY_RESTRICT from, std::size_t count) {
+HWY_INLINE Lanes load_doubles(const double* HWY_RESTRICT from, std::size_t count) {
   const Doubles dd;
   const HalfD half;
   HWY_ALIGN double buffer[lanes] = {};
@@ -38,66 +68,74 @@ HWY_INLINE V load_doubles(const double* HWY_RESTRICT from, std::size_t count) {
     for (std::size_t l = 0; l < count; ++l) buffer[l] = from[l];
     from = buffer;
   }
-  return hn::Combine(D(), hn::DemoteTo(half, hn::LoadU(dd, from + lanes / 2)), hn::DemoteTo(half, hn::LoadU(dd, from)));
+  return Lanes(
+      hn::Combine(D(), hn::DemoteTo(half, hn::LoadU(dd, from + lanes / 2)), hn::DemoteTo(half, hn::LoadU(dd, from))));
 }
 
 /// Writes the first `count` lanes to the doubles at `to`.
-HWY_INLINE void store_doubles(V v, double* HWY_RESTRICT to, std::size_t count) {
+HWY_INLINE void store_doubles(Lanes value, double* HWY_RESTRICT to, std::size_t count) {
   const Doubles dd;
   if (count == lanes) {
-    hn::StoreU(hn::PromoteTo(dd, hn::LowerHalf(v)), dd, to);
-    hn::StoreU(hn::PromoteTo(dd, hn::UpperHalf(HalfD(), v)), dd, to + lanes / 2);
+    hn::StoreU(hn::PromoteTo(dd, hn::LowerHalf(value.v)), dd, to);
+    hn::StoreU(hn::PromoteTo(dd, hn::UpperHalf(HalfD(), value.v)), dd, to + lanes / 2);
     return;
   }
   HWY_ALIGN float buffer[lanes];
-  hn::Store(v, D(), buffer);
+  hn::Store(value.v, D(), buffer);
   for (std::size_t l = 0; l < count; ++l) to[l] = static_cast<double>(buffer[l]);
 }
 
 /// Adds the first `count` lanes to the doubles at `to`.
-HWY_INLINE void add_doubles(V v, double* HWY_RESTRICT to, std::size_t count) {
+HWY_INLINE void add_doubles(Lanes value, double* HWY_RESTRICT to, std::size_t count) {
   const Doubles dd;
   if (count == lanes) {
-    hn::StoreU(hn::Add(hn::LoadU(dd, to), hn::PromoteTo(dd, hn::LowerHalf(v))), dd, to);
-    hn::StoreU(hn::Add(hn::LoadU(dd, to + lanes / 2), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), v))), dd,
+    hn::StoreU(hn::Add(hn::LoadU(dd, to), hn::PromoteTo(dd, hn::LowerHalf(value.v))), dd, to);
+    hn::StoreU(hn::Add(hn::LoadU(dd, to + lanes / 2), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), value.v))), dd,
                to + lanes / 2);
     return;
   }
   HWY_ALIGN float buffer[lanes];
-  hn::Store(v, D(), buffer);
+  hn::Store(value.v, D(), buffer);
   for (std::size_t l = 0; l < count; ++l) to[l] += static_cast<double>(buffer[l]);
 }
 
 /// Writes the first `count` lanes to `to`.
-HWY_INLINE void store(V v, float* HWY_RESTRICT to, std::size_t count) {
+HWY_INLINE void store(Lanes value, float* HWY_RESTRICT to, std::size_t count) {
   if (count == lanes) {
-    hn::StoreU(v, D(), to);
+    hn::StoreU(value.v, D(), to);
     return;
   }
   HWY_ALIGN float buffer[lanes];
-  hn::Store(v, D(), buffer);
+  hn::Store(value.v, D(), buffer);
   for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
 }
 
+/// The floats at `from`, as many as there are lanes.
+HWY_INLINE Lanes load(const float* HWY_RESTRICT from) { return Lanes(hn::LoadU(D(), from)); }
+
+/// Reads as many groups of four at `from` as there are lanes.
+HWY_INLINE void load_groups(const float* HWY_RESTRICT from, Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+  hn::LoadInterleaved4(D(), from, a.v, b.v, c.v, d.v);
+}
 /// Reads the first `count` groups of four at `from`, and no more: those behind may be another thread's. The other lanes
 /// are zero.
-HWY_INLINE void load_groups(const float* HWY_RESTRICT from, std::size_t count, V& a, V& b, V& c, V& d) {
+HWY_INLINE void load_groups(const float* HWY_RESTRICT from, std::size_t count, Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
   HWY_ALIGN float buffer[4 * lanes] = {};
   if (count < lanes) {
     for (std::size_t l = 0; l < 4 * count; ++l) buffer[l] = from[l];
     from = buffer;
   }
-  hn::LoadInterleaved4(D(), from, a, b, c, d);
+  hn::LoadInterleaved4(D(), from, a.v, b.v, c.v, d.v);
 }
 
 /// Writes the first `count` groups of four to `to`.
-HWY_INLINE void store_groups(V a, V b, V c, V d, float* HWY_RESTRICT to, std::size_t count) {
+HWY_INLINE void store_groups(Lanes a, Lanes b, Lanes c, Lanes d, float* HWY_RESTRICT to, std::size_t count) {
   if (count == lanes) {
-    hn::StoreInterleaved4(a, b, c, d, D(), to);
+    hn::StoreInterleaved4(a.v, b.v, c.v, d.v, D(), to);
     return;
   }
   HWY_ALIGN float buffer[4 * lanes];
-  hn::StoreInterleaved4(a, b, c, d, D(), buffer);
+  hn::StoreInterleaved4(a.v, b.v, c.v, d.v, D(), buffer);
   for (std::size_t l = 0; l < 4 * count; ++l) to[l] = buffer[l];
 }
 

@@ -1,12 +1,12 @@
 #pragma once
-// The choices of the method: one enumeration a choice, the sound one first.
+// Options of the method; the recommended value of each is listed first.
 
 #include <optional>
 
+#include "material/rheology.hpp"
+
 namespace talus {
 
-enum class ShearRate { consistent, paper };      ///< sqrt(2 dev:dev) | sqrt(2/3 dev:dev), [Z20] Eq. 7 as printed
-enum class Yield { elastic, regularized };       ///< elasto-viscoplastic | equivalent viscosity, [Z20] Eq. 6
 enum class WallContact { always, approaching };  ///< approaching: a wall acts only where v_ij . x_ij < 0, [Z20] 2.1
 enum class WallSlip { no_slip, friction, free_slip };  ///< friction: the soil's own, or a smaller angle of the wall
 enum class KernelShape { wendland_c2, cubic_spline };
@@ -15,15 +15,6 @@ enum class Integrator { rk2, leapfrog };
 enum class Continuity { volume, mass };  ///< rho_i sum V_j | sum m_j, [Z20] Eq. 1; equal where density is uniform
 enum class Precision { single, full };   ///< of the soil-soil pair sums; the state is double in both
 enum class InitialPressure { hydrostatic, stress_free };
-
-/// How the soil yields.
-struct Rheology {
-  ShearRate shear_rate = ShearRate::consistent;
-  Yield yield = Yield::elastic;
-  double gamma_dot_min = 1e-3;  ///< floor of the shear rate of the regularised law [1/s], > 0; [Z20] uses 1e-3
-  std::optional<double> G;      ///< numerical shear modulus of the elastic law [Pa], > 0; unset: 0.1 rho0 c_s^2
-  bool operator==(const Rheology&) const = default;
-};
 
 /// How the equations are discretised.
 struct Numerics {

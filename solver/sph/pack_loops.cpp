@@ -11,6 +11,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sph/density_diffusion-inl.hpp"
 #include "sph/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -41,13 +42,13 @@ HWY_INLINE void store(Wide v, double* HWY_RESTRICT to, std::size_t count) {
   hn::Store(v.lo, dd, buffer), hn::Store(v.hi, dd, buffer + lanes / 2);
   for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
 }
-HWY_INLINE Wide wide(V v) {
+HWY_INLINE Wide wide(Lanes a) {
   const Doubles dd;
-  return {hn::PromoteTo(dd, hn::LowerHalf(v)), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), v))};
+  return {hn::PromoteTo(dd, hn::LowerHalf(a.v)), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), a.v))};
 }
-HWY_INLINE V narrow(Wide v) {
+HWY_INLINE Lanes narrow(Wide a) {
   const HalfD half;
-  return hn::Combine(D(), hn::DemoteTo(half, v.hi), hn::DemoteTo(half, v.lo));
+  return Lanes(hn::Combine(D(), hn::DemoteTo(half, a.hi), hn::DemoteTo(half, a.lo)));
 }
 HWY_INLINE Wide each(double value) { return {hn::Set(Doubles(), value), hn::Set(Doubles(), value)}; }
 HWY_INLINE Wide operator+(Wide a, Wide b) { return {hn::Add(a.lo, b.lo), hn::Add(a.hi, b.hi)}; }
@@ -56,10 +57,10 @@ HWY_INLINE Wide operator*(Wide a, Wide b) { return {hn::Mul(a.lo, b.lo), hn::Mul
 HWY_INLINE Wide operator/(Wide a, Wide b) { return {hn::Div(a.lo, b.lo), hn::Div(a.hi, b.hi)}; }
 
 /// Fixed-point coordinates as bit patterns.
-HWY_INLINE V fixed_point(Wide x, double lo, double per_quantum) {
+HWY_INLINE Lanes fixed_point(Wide x, double lo, double per_quantum) {
   const hn::Rebind<std::int32_t, HalfD> di;
   const Wide units = (x - each(lo)) * each(per_quantum);
-  return hn::BitCast(D(), hn::Combine(DI(), hn::DemoteTo(di, units.hi), hn::DemoteTo(di, units.lo)));
+  return Lanes(hn::BitCast(D(), hn::Combine(DI(), hn::DemoteTo(di, units.hi), hn::DemoteTo(di, units.lo))));
 }
 
 HWY_INLINE Wide max(Wide a, Wide b) { return {hn::Max(a.lo, b.lo), hn::Max(a.hi, b.hi)}; }
@@ -76,44 +77,42 @@ struct StateV {
 /// Packs states as they are.
 struct Packer {
   double per_quantum;
-  Wide gx, gy, mass;
+  Vector<Wide> g_per_c2;
+  Wide mass;
   bool one_mass;
 
   Packer(const PackedFlow& f, const FlowConstants& k)
       : per_quantum(1.0 / f.fixed.quantum),
-        gx(each(k.g.x / (k.c_s * k.c_s))),
-        gy(each(k.g.y / (k.c_s * k.c_s))),
+        g_per_c2{each(k.g.x / (k.c_s * k.c_s)), each(k.g.y / (k.c_s * k.c_s))},
         mass(each(f.mass.value_or(0.0))),
         one_mass(f.mass) {}
 
   HWY_INLINE void pack(PackedFlow& f, const FlowConstants& k, const Soil& soil, const StateV& s, std::size_t i,
                        std::size_t count) const {
-    const D d;
     HWY_ALIGN double rho0[lanes];
     HWY_ALIGN float material[lanes] = {};
-    std::fill_n(rho0, lanes, k.laws[0].eos.rho0);
-    if (k.laws.size() > 1)
+    std::fill_n(rho0, lanes, k.soils[0].eos.rho0);
+    if (k.soils.size() > 1)
       for (std::size_t l = 0; l < count; ++l)
         material[l] = static_cast<float>(soil.material[i + l]),
-        rho0[l] = k.laws[static_cast<std::size_t>(soil.material[i + l])].eos.rho0;
+        rho0[l] = k.soils[static_cast<std::size_t>(soil.material[i + l])].eos.rho0;
     const Wide q = s.rho / load(rho0, lanes) - each(1.0);
-    const Wide hydrostatic = gx * (s.x - each(f.fixed.lo.x)) + gy * (s.y - each(f.fixed.lo.y));
+    const Vector<Wide> x{s.x - each(f.fixed.lo.x), s.y - each(f.fixed.lo.y)};
     store_groups(fixed_point(s.x, f.fixed.lo.x, per_quantum), fixed_point(s.y, f.fixed.lo.y, per_quantum), narrow(s.vx),
                  narrow(s.vy), f.soil.motion.data() + 4 * i, count);
     const Wide m = one_mass ? mass : load(soil.m.data() + i, count);
-    store_groups(narrow(m / s.rho), narrow(q - hydrostatic), narrow(s.rho), hn::Load(d, material),
+    store_groups(narrow(m / s.rho), narrow(dynamic_density(q, g_per_c2, x)), narrow(s.rho), load(material),
                  f.soil.density.data() + 4 * i, count);
     store(narrow(q), f.soil.q.data() + i, count);
   }
 };
 
 HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk) {
-  const D d;
   const Packer packer(f, k);
   const Wide dt = each(ahead);
   for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
     const std::size_t count = std::min(chunk.end - i, lanes);
-    const auto rate = [&](const std::vector<float>& array) HWY_ATTR { return wide(hn::LoadU(d, array.data() + i)); };
+    const auto rate = [&](const std::vector<float>& array) HWY_ATTR { return wide(load(array.data() + i)); };
     const auto state = [&](const std::vector<double>& array) HWY_ATTR { return load(array.data() + i, count); };
     const Wide vx = state(soil.vx), vy = state(soil.vy);
     packer.pack(f, k, soil,
@@ -128,12 +127,12 @@ HWY_ATTR StepExtrema move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil&
   const D d;
   const Packer packer(f, k);
   const Wide dt = each(step), half = each(0.5), zero = each(0.0);
-  V displacement2 = hn::Zero(d), acceleration2 = hn::Zero(d);
+  Lanes displacement2(0.0), acceleration2(0.0);
   Wide speed2 = zero, moved2 = zero, min_density = each(1e300), nonfinite = zero, leftmost = each(1e300),
        rightmost = each(-1e300);
   for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
     const std::size_t count = std::min(chunk.end - i, lanes);
-    const V ax = hn::LoadU(d, f.soil.ax.data() + i), ay = hn::LoadU(d, f.soil.ay.data() + i);
+    const Lanes ax = load(f.soil.ax.data() + i), ay = load(f.soil.ay.data() + i);
     const auto state = [&](const std::vector<double>& array) HWY_ATTR { return load(array.data() + i, count); };
     const auto move = [&](std::vector<double>& array, Wide rate) HWY_ATTR {
       const Wide to = load(array.data() + i, count) + dt * rate;
@@ -141,7 +140,7 @@ HWY_ATTR StepExtrema move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil&
       return to;
     };
     const auto move_with = [&](std::vector<double>& array, const std::vector<float>& rate)
-                               HWY_ATTR { return move(array, wide(hn::LoadU(d, rate.data() + i))); };
+                               HWY_ATTR { return move(array, wide(load(rate.data() + i))); };
     StateV s;
     const Wide old_vx = state(soil.vx), old_vy = state(soil.vy);
     s.vx = move(soil.vx, wide(ax)), s.vy = move(soil.vy, wide(ay));
@@ -149,7 +148,7 @@ HWY_ATTR StepExtrema move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil&
     move_with(soil.txx, f.soil.dtxx), move_with(soil.tyy, f.soil.dtyy), move_with(soil.txy, f.soil.dtxy);
     Wide vx = half * (old_vx + s.vx), vy = half * (old_vy + s.vy);
     if (midpoint_velocity) {
-      V x, y, middle_vx, middle_vy;
+      Lanes x, y, middle_vx, middle_vy;
       load_groups(f.soil.motion.data() + 4 * i, count, x, y, middle_vx, middle_vy);
       vx = wide(middle_vx), vy = wide(middle_vy);
     }
@@ -158,17 +157,16 @@ HWY_ATTR StepExtrema move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil&
     const auto moved_from = [&](const std::vector<float>& from, Wide to) HWY_ATTR {
       HWY_ALIGN float buffer[lanes] = {};
       std::copy_n(from.data() + i, count, buffer);
-      return to - wide(hn::Load(d, buffer));
+      return to - wide(load(buffer));
     };
     const Wide dx = moved_from(soil.x_sorted, s.x), dy = moved_from(soil.y_sorted, s.y);
-    const V vx_n = narrow(vx), vy_n = narrow(vy);
-    V displacement2_i = hn::MulAdd(vx_n, vx_n, hn::Mul(vy_n, vy_n)),
-      acceleration2_i = hn::MulAdd(ax, ax, hn::Mul(ay, ay));
+    const Lanes vx_n = narrow(vx), vy_n = narrow(vy);
+    Lanes displacement2_i = fma(vx_n, vx_n, vy_n * vy_n), acceleration2_i = fma(ax, ax, ay * ay);
     Wide speed2_i = s.vx * s.vx + s.vy * s.vy, moved2_i = dx * dx + dy * dy;
     if (count < lanes) {
-      const M some = hn::FirstN(d, count);
-      displacement2_i = hn::IfThenElseZero(some, displacement2_i),
-      acceleration2_i = hn::IfThenElseZero(some, acceleration2_i);
+      const Lanes::Mask some{hn::FirstN(d, count)};
+      displacement2_i = select_or_zero(some, displacement2_i);
+      acceleration2_i = select_or_zero(some, acceleration2_i);
       // Lanes without a particle, or with one of another thread's, repeat the first one.
       for (Wide* v : {&s.rho, &s.x, &speed2_i, &moved2_i}) {
         HWY_ALIGN double values[lanes];
@@ -177,13 +175,14 @@ HWY_ATTR StepExtrema move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil&
         *v = load(values, lanes);
       }
     }
-    displacement2 = hn::Max(displacement2, displacement2_i), acceleration2 = hn::Max(acceleration2, acceleration2_i);
+    displacement2 = max(displacement2, displacement2_i);
+    acceleration2 = max(acceleration2, acceleration2_i);
     speed2 = max(speed2, speed2_i), moved2 = max(moved2, moved2_i), min_density = min(min_density, s.rho);
     leftmost = min(leftmost, s.x), rightmost = max(rightmost, s.x);
     nonfinite = nonfinite + zero * (speed2_i + moved2_i + s.rho);  // stays zero unless something is not finite
   }
-  const auto root = [&](V squares)
-                        HWY_ATTR { return std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, squares)))); };
+  const auto root = [&](Lanes squares)
+                        HWY_ATTR { return std::sqrt(static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, squares.v)))); };
   return {step * root(displacement2),
           root(acceleration2),
           std::sqrt(largest(speed2)),

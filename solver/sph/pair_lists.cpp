@@ -44,7 +44,7 @@ HWY_ATTR void list_chunk(const FixedPoint& fixed, std::span<const std::uint32_t>
   const DI di;
   ClusterList::Chunk& out = list.chunks[chunk];
   const double reach = distance / fixed.quantum;
-  const V reach2 = set(1.00001 * reach * reach), zero = hn::Zero(d);
+  const V reach2 = hn::Set(d, static_cast<float>(1.00001 * reach * reach)), zero = hn::Zero(d);
   const std::size_t begin = chunk * ClusterList::chunk_size,
                     end = std::min(begin + ClusterList::chunk_size, first.size() - 1);
   std::size_t used = 0;

@@ -1,4 +1,4 @@
-// Pairs of a cluster and its neighbours: separations and kernels. Included once for every instruction set.
+// The pair loop of the vectorised passes. Included once for every instruction set.
 
 #if defined(TALUS_SPH_PAIRS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TALUS_SPH_PAIRS_INL
@@ -9,99 +9,16 @@
 
 #include <hwy/highway.h>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 
-#include "sph/flow_constants.hpp"
+#include "math/tensor-inl.hpp"
 #include "sph/lanes-inl.hpp"
 #include "sph/pair_loops.hpp"
+#include "sph/wall-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
-
-/// Neighbours are taken some at a time, step by step together, and the separations of the next ones are worked out
-/// before these are summed: the processor looks ahead too little to see from one pair's square root to the next pair's.
-constexpr std::size_t block = ClusterList::block;
-struct Block {
-  V v[block];
-};
-
-/// r_ij in quanta of all particles i of a cluster from a block of particles j: components, squared length, length.
-struct Separations {
-  Block x, y, s, r;
-};
-HWY_INLINE Separations separations(V X, V Y, const float* HWY_RESTRICT groups, const std::uint32_t* j) {
-  const D d;
-  const DI di;
-  Separations r;
-  for (std::size_t b = 0; b < block; ++b) {
-    const float* HWY_RESTRICT group = groups + 4 * std::size_t{j[b]};
-    r.x.v[b] = hn::ConvertTo(d, hn::Sub(hn::BitCast(di, X), hn::BitCast(di, set(group[0]))));
-    r.y.v[b] = hn::ConvertTo(d, hn::Sub(hn::BitCast(di, Y), hn::BitCast(di, set(group[1]))));
-  }
-  for (std::size_t b = 0; b < block; ++b) r.s.v[b] = hn::MulAdd(r.x.v[b], r.x.v[b], hn::Mul(r.y.v[b], r.y.v[b]));
-  for (std::size_t b = 0; b < block; ++b) r.r.v[b] = hn::Sqrt(r.s.v[b]);
-  return r;
-}
-
-/// The kernels as functions of the distance in quanta; see sph/kernel.hpp. Both vanish beyond 2h of themselves, so that
-/// no lane needs a mask.
-struct CubicSplineV {
-  V per_h, inner_slope, h2, outer_scale, edge, two;
-
-  explicit CubicSplineV(double quantum_per_h)
-      : per_h(set(quantum_per_h)),
-        inner_slope(set(1.5 * quantum_per_h)),
-        h2(set(1.0 / (quantum_per_h * quantum_per_h))),
-        outer_scale(set(std::sqrt(0.5 * quantum_per_h))),
-        edge(set(std::sqrt(2.0 / quantum_per_h))),
-        two(set(2.0f)) {}
-
-  /// -F h^2/sigma: 2 - 3/2 u for u < 1, (2 - u)^2/(2u) beyond. At r = 0 the second is infinite and not chosen.
-  HWY_INLINE void minus_F(const Separations& at, Block& F) const {
-    Block w;
-    for (std::size_t b = 0; b < block; ++b)
-      w.v[b] = hn::Max(hn::NegMulAdd(outer_scale, at.r.v[b], edge), hn::Zero(D()));
-    for (std::size_t b = 0; b < block; ++b) {
-      const V outer = hn::Div(hn::Mul(w.v[b], w.v[b]), at.r.v[b]);
-      F.v[b] = hn::IfThenElse(hn::Lt(at.s.v[b], h2), hn::NegMulAdd(inner_slope, at.r.v[b], two), outer);
-    }
-  }
-  /// W/sigma: 2/3 - u^2 + u^3/2 for u < 1, (2 - u)^3/6 beyond.
-  HWY_INLINE V W(V r) const {
-    const V u = hn::Mul(per_h, r), w = hn::Max(hn::Sub(two, u), hn::Zero(D()));
-    const V inner = hn::MulAdd(hn::Mul(u, u), hn::MulSub(set(0.5f), u, set(1.0f)), set(2.0f / 3.0f));
-    return hn::IfThenElse(hn::Lt(u, set(1.0f)), inner, hn::Mul(hn::Mul(w, w), hn::Mul(w, set(1.0f / 6.0f))));
-  }
-};
-
-struct WendlandC2V {
-  V half_per_h;
-
-  explicit WendlandC2V(double quantum_per_h) : half_per_h(set(0.5 * quantum_per_h)) {}
-
-  HWY_INLINE V rest(V r) const { return hn::Max(hn::NegMulAdd(half_per_h, r, set(1.0f)), hn::Zero(D())); }
-  /// -F h^2/sigma = 5 (1 - u/2)^3.
-  HWY_INLINE void minus_F(const Separations& at, Block& F) const {
-    for (std::size_t b = 0; b < block; ++b) {
-      const V w = rest(at.r.v[b]);
-      F.v[b] = hn::Mul(hn::Mul(set(5.0f), w), hn::Mul(w, w));
-    }
-  }
-  /// W/sigma = (1 - u/2)^4 (2u + 1) = w^4 (5 - 4w).
-  HWY_INLINE V W(V r) const {
-    const V w = rest(r), w2 = hn::Mul(w, w);
-    return hn::Mul(hn::Mul(w2, w2), hn::NegMulAdd(set(4.0f), w, set(5.0f)));
-  }
-};
-
-/// sigma/h^2 of both kernels: see sph/kernel.hpp.
-inline double sigma_h2(const FlowConstants& k) {
-  const double shape = k.numerics.kernel == KernelShape::wendland_c2 ? 7.0 / 4.0 : 15.0 / 7.0, h2 = k.h * k.h;
-  return shape / (std::numbers::pi * h2 * h2);
-}
 
 /// The neighbours of cluster c: sources' places [begin, end).
 struct Neighbours {
@@ -113,13 +30,67 @@ HWY_INLINE Neighbours neighbours(const ClusterList& list, std::size_t c) {
   return {chunk.places.data() + chunk.at[k], chunk.places.data() + chunk.at[k + 1]};
 }
 
-/// Calls f(kernel) with a null pointer to the kernel's type.
-template <class F>
-void with_kernel(const FlowConstants& k, F&& f) {
-  if (k.numerics.kernel == KernelShape::wendland_c2)
-    f(static_cast<WendlandC2V*>(nullptr));
-  else
-    f(static_cast<CubicSplineV*>(nullptr));
+/// Neighbours are taken some at a time, step by step together.
+constexpr std::size_t block = ClusterList::block;
+
+/// r_ij in quanta of all particles i of a cluster from a block of particles j.
+struct Separations {
+  Vector<Lanes> r[block];
+  Lanes r2[block], distance[block];
+};
+/// @param x       positions of the cluster, the bit patterns of integers
+/// @param groups  the particles, in groups of four that begin with their positions
+HWY_INLINE Separations separations(Vector<Lanes> x, const float* HWY_RESTRICT groups, const std::uint32_t* j) {
+  const D d;
+  const DI di;
+  Separations at;
+  for (std::size_t b = 0; b < block; ++b) {
+    const float* HWY_RESTRICT group = groups + 4 * std::size_t{j[b]};
+    const auto difference = [&](Lanes to, float from) HWY_ATTR {
+      return Lanes(hn::ConvertTo(d, hn::Sub(hn::BitCast(di, to.v), hn::BitCast(di, Lanes(from).v))));
+    };
+    at.r[b] = {difference(x.x, group[0]), difference(x.y, group[1])};
+  }
+  for (std::size_t b = 0; b < block; ++b) at.r2[b] = dot(at.r[b], at.r[b]);
+  for (std::size_t b = 0; b < block; ++b) at.distance[b] = sqrt(at.r2[b]);
+  return at;
+}
+
+/// A neighbour j of all particles of a cluster.
+struct Pair {
+  std::size_t j;
+  Vector<Lanes> r;  ///< r_ij [quantum]
+  Lanes r2;         ///< r_ij^2 [quantum2]
+  Lanes kernel;     ///< value of the kernel
+};
+
+/// Calls interact(Pair) for all neighbours of a cluster at x in their order, with kernel(|r|, r^2).
+/// `LookAhead`: works out the separations of the next block before this one is summed: the processor looks ahead too
+/// little to see from one pair's square root to the next pair's.
+template <bool LookAhead, class Kernel, class Interaction>
+HWY_INLINE void for_neighbours(Vector<Lanes> x, const float* HWY_RESTRICT groups, Neighbours near, Kernel&& kernel,
+                               Interaction&& interact) {
+  Separations next;
+  if constexpr (LookAhead) next = separations(x, groups, near.begin);
+  for (const std::uint32_t* j = near.begin; j != near.end; j += block) {
+    if constexpr (!LookAhead) next = separations(x, groups, j);
+    const Separations at = next;
+    if constexpr (LookAhead) next = separations(x, groups, j + block);
+    Lanes value[block];
+    for (std::size_t b = 0; b < block; ++b) value[b] = kernel(at.distance[b], at.r2[b]);
+    for (std::size_t b = 0; b < block; ++b) interact(Pair{j[b], at.r[b], at.r2[b], value[b]});
+  }
+}
+
+/// A group of four of the walls' particle j.
+HWY_INLINE WallParticle<Lanes> wall_particle(const PackedWalls& walls, std::size_t j) {
+  const float* HWY_RESTRICT place = walls.place.data() + 4 * j;
+  return {{Lanes(place[2]), Lanes(place[3])}, Lanes(walls.stress[4 * j + 3])};
+}
+/// The stress of a group of four (sxx, syy, sxy, ...).
+HWY_INLINE Symmetric<Lanes> stress_of(const std::vector<float>& groups, std::size_t j) {
+  const float* HWY_RESTRICT stress = groups.data() + 4 * j;
+  return {Lanes(stress[0]), Lanes(stress[1]), Lanes(stress[2])};
 }
 
 }  // namespace talus::HWY_NAMESPACE

@@ -1,223 +1,208 @@
 #include "sph/right_hand_side.hpp"
 
 #include <cmath>
-#include <limits>
-#include <numbers>
+#include <vector>
 
-#include "material/elastoviscoplastic.hpp"
-#include "sph/artificial_viscosity.hpp"
-#include "sph/continuity.hpp"
-#include "sph/density_filter.hpp"
-#include "sph/momentum.hpp"
-#include "sph/velocity_gradient.hpp"
-#include "sph/wall.hpp"
+#include "sph/artificial_viscosity-inl.hpp"
+#include "sph/density_filter-inl.hpp"
+#include "sph/kernel-inl.hpp"
+#include "sph/momentum-inl.hpp"
+#include "sph/point_update-inl.hpp"
 
 namespace talus {
 namespace {
 
-constexpr std::size_t chunk_size = 128;  ///< particles that a thread takes at a time
+using namespace HWY_NAMESPACE;  // the laws, here for double
 
-/// Calls f(j, r_ij, r2) for every j of `cells` within the kernel's support of x_i, itself included, in the order of the
+constexpr std::size_t grain = 128;  ///< particles that a thread takes at a time
+
+Vector<double> vector(Vec2 a) { return {a.x, a.y}; }
+
+/// Calls interact(j, r_ij, r2) for every j of `cells` within the support of x_i, itself included, in the order of the
 /// cells.
-template <class Points, class F>
-inline void for_neighbours(const CellList& cells, const Points& points, Vec2 x_i, double support2, F&& f) {
+template <class Points, class Interaction>
+void for_neighbours(const CellList& cells, const Points& points, Vec2 x_i, double support2, Interaction&& interact) {
   cells.for_ranges(x_i, [&](std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
-      const Vec2 r{x_i.x - points.x[j], x_i.y - points.y[j]};
-      const double r2 = norm2(r);
-      if (r2 < support2) f(j, r, r2);
+      const Vector<double> r{x_i.x - points.x[j], x_i.y - points.y[j]};
+      const double r2 = dot(r, r);
+      if (r2 < support2) interact(j, r, r2);
     }
   });
 }
 
-/// Distance of a soil particle to the wall line, by the tangent at the wall particle's foot [m].
-double distance_to_wall(const WallParticles& walls, std::size_t j, Vec2 r_ij) {
-  return dot(r_ij, walls.normal(j)) - walls.depth[j];
+/// One particle of the soil, as update_point reads and writes it.
+struct SoilPoint {
+  const FlowConstants& k;
+  Soil& soil;
+  std::size_t i;
+
+  const ConstitutiveParameters& parameters(std::size_t j) const {
+    return k.soils[static_cast<std::size_t>(soil.material[j])];
+  }
+  double q() const { return soil.rho[i] / parameters(i).eos.rho0 - 1.0; }
+  double tan_phi() const { return soil.tan_phi[i]; }
+  template <class Get>
+  double constant(Get&& get) const {
+    return get(parameters(i));
+  }
+  const SoilPoint& elastic() const { return *this; }
+  void set_stress(Symmetric<double> s, double p) const {
+    soil.sxx[i] = s.xx;
+    soil.syy[i] = s.yy;
+    soil.sxy[i] = s.xy;
+    soil.p[i] = p;
+  }
+  void set_rates(double drho, double gamma_dot) const {
+    soil.drho[i] = drho;
+    soil.gamma_dot[i] = gamma_dot;
+  }
+
+  Deviator<double> value() const { return {soil.txx[i], soil.tyy[i], soil.txy[i]}; }
+  void add(Deviator<double> change) const {
+    soil.txx[i] += change.xx;
+    soil.tyy[i] += change.yy;
+    soil.txy[i] += change.xy;
+  }
+  void set_rate(Deviator<double> rate) const {
+    soil.dtxx[i] = rate.xx;
+    soil.dtyy[i] = rate.yy;
+    soil.dtxy[i] = rate.xy;
+  }
+};
+
+/// The passes over all particles, for one kernel.
+template <class Kernel>
+struct Passes {
+  const FlowConstants& k;
+  Soil& soil;
+  WallParticles& walls;
+  const CellList &soil_cells, &wall_cells;
+  Kernel kernel{1.0 / k.h};
+  double sigma = sigma_h2<Kernel>(k.h), support2 = 4.0 * k.h * k.h;
+  WallLaw<double> wall_law{k.walls, 1.0};
+
+  double minus_F(double r2) const { return kernel.minus_F(std::sqrt(r2), r2); }
+  Symmetric<double> stress(std::size_t i) const { return {soil.sxx[i], soil.syy[i], soil.sxy[i]}; }
+  WallParticle<double> wall_particle(std::size_t j) const { return {vector(walls.normal(j)), walls.depth[j]}; }
+  double q(std::size_t j) const { return SoilPoint{k, soil, j}.q(); }
+
+  template <class Model>
+  void update_stress(std::size_t i) const {
+    const double c2 = k.c_s * k.c_s, rho_i = soil.rho[i];
+    const bool by_mass = k.numerics.continuity == Continuity::mass,
+               diffuse = k.numerics.density_filter == DensityFilter::delta_sph;
+    const Vector<double> v_i = vector(soil.velocity(i)), g_per_c2{k.g.x / c2, k.g.y / c2};
+    const auto dynamic = [&](std::size_t j) { return dynamic_density(q(j), g_per_c2, vector(soil.position(j))); };
+    const double dynamic_i = dynamic(i);
+    auto sums = FlowRateSums<double>::zero();
+    for_neighbours(soil_cells, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
+      const double VF = soil.m[j] / soil.rho[j] * minus_F(r2);
+      sums.add(VF, soil.rho[j], v_i - vector(soil.velocity(j)), r, by_mass);
+      if (diffuse && soil.material[j] == soil.material[i])
+        sums.diffusion = add_diffusion(sums.diffusion, VF, dynamic(j) - dynamic_i);
+    });
+    for_neighbours(wall_cells, walls, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
+      const WallPair<double> w = wall_law.pair(r, v_i, wall_particle(j));
+      if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
+      sums.add(walls.volume * minus_F(r2), rho_i, w.v_ij, r, by_mass);
+      sums.wall_distance = min(sums.wall_distance, w.distance);
+    });
+    const double to_diffusion = 2.0 * k.numerics.delta * k.h * k.c_s * sigma;
+    update_point(k, Model(k.rheology), sums.rates(-sigma, to_diffusion, by_mass, rho_i), SoilPoint{k, soil, i});
+  }
+
+  void update_wall_stress(std::size_t w) const {
+    auto sum = WallStressSum<double>::zero();
+    for_neighbours(soil_cells, soil, walls.position(w), support2, [&](std::size_t j, Vector<double> r, double r2) {
+      sum.add(kernel.W(std::sqrt(r2)), {stress(j), soil.p[j], soil.rho[j], q(j)}, dot(vector(k.g), r),
+              1.0 / (k.c_s * k.c_s));
+    });
+    const WallStress<double> wall = sum.value(k, vector(walls.normal(w)));
+    walls.p[w] = wall.p;
+    walls.compression[w] = wall.density_ratio;
+    walls.sxx[w] = wall.s.xx;
+    walls.syy[w] = wall.s.yy;
+    walls.sxy[w] = wall.s.xy;
+  }
+
+  template <bool Quadratic>
+  void update_acceleration(std::size_t i) const {
+    const ArtificialViscosity<double, Quadratic> viscosity(k, 1.0);
+    const Vector<double> v_i = vector(soil.velocity(i));
+    const double rho_i = soil.rho[i], viscosity_of_i = viscosity.of_particle(rho_i);
+    const Symmetric<double> s_i = stress(i);
+    Vector<double> sum{0.0, 0.0};
+    for_neighbours(soil_cells, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
+      const double Pi = viscosity(viscosity_of_i, rho_i, soil.rho[j], dot(v_i - vector(soil.velocity(j)), r), r2);
+      sum = add_force(sum, s_i, stress(j), Pi, soil.m[j] / soil.rho[j] * minus_F(r2), r);
+    });
+    for_neighbours(wall_cells, walls, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
+      const WallPair<double> w = wall_law.pair(r, v_i, wall_particle(j));
+      if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
+      const double Pi = viscosity(viscosity_of_i, rho_i, rho_i, w.v_dot_r, r2);
+      sum = add_force(sum, s_i, {walls.sxx[j], walls.syy[j], walls.sxy[j]}, Pi, walls.volume * minus_F(r2), r);
+    });
+    const Vector<double> a = fma(-sigma / rho_i, sum, vector(k.g));
+    soil.ax[i] = a.x;
+    soil.ay[i] = a.y;
+  }
+
+  template <class Model>
+  void evaluate() const {
+#pragma omp parallel
+    {
+#pragma omp for schedule(static, grain)
+      for (std::size_t i = 0; i < soil.n_active; ++i) update_stress<Model>(i);
+#pragma omp for schedule(static, grain)
+      for (std::size_t w = 0; w < walls.size(); ++w) update_wall_stress(w);
+#pragma omp for schedule(static, grain)
+      for (std::size_t i = 0; i < soil.n_active; ++i) {
+        if (k.numerics.beta > 0.0)
+          update_acceleration<true>(i);
+        else
+          update_acceleration<false>(i);
+      }
+    }
+  }
+};
+
+/// Shepard-filtered density of one particle [kg/m3].
+template <class Kernel>
+double filtered_density(const Kernel& kernel, const FlowConstants& k, const Soil& soil, std::size_t i,
+                        const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) {
+  const double support2 = 4.0 * k.h * k.h;
+  const auto rho0 = [&](std::size_t j) { return k.soils[static_cast<std::size_t>(soil.material[j])].eos.rho0; };
+  ShepardSum<double> sum{0.0, 0.0};
+  for_neighbours(soil_cells, soil, soil.position(i), support2, [&](std::size_t j, Vector<double>, double r2) {
+    sum.add(soil.m[j] / soil.rho[j], soil.rho[j] / rho0(j), kernel.W(std::sqrt(r2)));
+  });
+  for_neighbours(wall_cells, walls, soil.position(i), support2, [&](std::size_t j, Vector<double>, double r2) {
+    if (walls.compression[j] > 0.0) sum.add(walls.volume, walls.compression[j], kernel.W(std::sqrt(r2)));
+  });
+  return rho0(i) * sum.value();
 }
 
 }  // namespace
 
-RightHandSide::RightHandSide(FlowConstants constants)
-    : k_(std::move(constants)), tan_phi_wall_(std::tan(k_.walls.phi)) {
-  for (const PointLaw& law : k_.laws) rho0_.push_back(law.eos.rho0);
-}
-
-/// From the velocity gradient to pressure, stress and the rate of the elastic stress: the law of one point.
-void RightHandSide::apply_law(Soil& soil, std::size_t i, const Rates& rates) const {
-  const PointLaw& law = k_.laws[static_cast<std::size_t>(soil.material[i])];
-  const bool as_printed = k_.rheology.shear_rate == ShearRate::paper;
-  const double tan_phi =
-      k_.walls.slip == WallSlip::friction
-          ? interface_tan_phi(soil.tan_phi[i], tan_phi_wall_, rates.wall_distance, interface_thickness(k_.h))
-          : soil.tan_phi[i];
-  const Dev e = deviator(strain_rate(rates.L));
-  const double p_full = law.eos.pressure(soil.rho[i]);
-  const double p = k_.numerics.tension_cutoff ? without_tension(p_full) : p_full;
-  const double tau_y = yield_stress(law.c, tan_phi, p);
-  const double gamma_dot = as_printed ? shear_rate_paper(e) : shear_rate_consistent(e);
-  Dev t;
-  if (k_.rheology.yield == Yield::regularized) {
-    t = law.bingham.stress(tau_y, e, gamma_dot);
-  } else {
-    // Eq. 7 as printed shears at sqrt(3) tau_y; the elastic law follows it.
-    const Dev elastic = return_to_yield(soil.t(i), as_printed ? std::numbers::sqrt3 * tau_y : tau_y);
-    soil.txx[i] = elastic.xx, soil.tyy[i] = elastic.yy, soil.txy[i] = elastic.xy;
-    const Dev rate = elastic_rate(elastic, e, spin(rates.L), law.G);
-    soil.dtxx[i] = rate.xx, soil.dtyy[i] = rate.yy, soil.dtxy[i] = rate.xy;
-    t = elastic + (2.0 * law.bingham.eta) * e;
-  }
-  const Sym2 s = cauchy(p, t);
-  soil.drho[i] = rates.drho, soil.p[i] = p, soil.gamma_dot[i] = gamma_dot;
-  soil.sxx[i] = s.xx, soil.syy[i] = s.yy, soil.sxy[i] = s.xy;
-}
-
-template <class Kernel>
-RightHandSide::Rates RightHandSide::soil_rates(const Kernel& kernel, const Soil& soil, std::size_t i,
-                                               const CellList& soil_cells) const {
-  const bool by_mass = k_.numerics.continuity == Continuity::mass;
-  const bool diffuse = k_.numerics.density_filter == DensityFilter::delta_sph;
-  const Vec2 v_i = soil.velocity(i);
-  const double rho_i = soil.rho[i], rho0 = rho0_[static_cast<std::size_t>(soil.material[i])];
-  Rates rates{{}, 0.0, std::numeric_limits<double>::infinity()};
-  double diffusion = 0.0;
-  for_neighbours(soil_cells, soil, soil.position(i), kernel.support2(), [&](std::size_t j, Vec2 r, double r2) {
-    const double F = kernel.F(r2), V_j = soil.m[j] / soil.rho[j];
-    const Vec2 grad_W = F * r, v_ij = v_i - soil.velocity(j);
-    add_velocity_gradient(rates.L, V_j, v_ij, grad_W);
-    rates.drho += continuity_term(by_mass ? soil.m[j] : rho_i * V_j, v_ij, grad_W);
-    if (diffuse && r2 > 0.0 && soil.material[j] == soil.material[i])
-      diffusion += diffusion_term(V_j, soil.rho[j] - rho_i, rho0, k_.g, k_.c_s, r, F);
-  });
-  if (diffuse) rates.drho += 2.0 * k_.numerics.delta * k_.h * k_.c_s * diffusion;
-  return rates;
-}
-
-template <class Kernel>
-void RightHandSide::add_wall_rates(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls,
-                                   const CellList& wall_cells, Rates& rates) const {
-  const bool only_approaching = k_.walls.contact == WallContact::approaching;
-  const Vec2 v_i = soil.velocity(i);
-  for_neighbours(wall_cells, walls, soil.position(i), kernel.support2(), [&](std::size_t j, Vec2 r, double r2) {
-    const double d_i = distance_to_wall(walls, j, r);
-    const double b = mirror_ratio(d_i, walls.depth[j], k_.walls.b_max);
-    const Vec2 v_ij = wall_relative_velocity(v_i, walls.normal(j), b, k_.walls.slip);
-    if (only_approaching && dot(v_ij, r) >= 0.0) return;
-    const Vec2 grad_W = kernel.F(r2) * r;
-    add_velocity_gradient(rates.L, walls.volume, v_ij, grad_W);
-    rates.drho += continuity_term(soil.rho[i] * walls.volume, v_ij, grad_W);
-    rates.wall_distance = std::min(rates.wall_distance, d_i);
-  });
-}
-
-template <class Kernel>
-void RightHandSide::wall_stress(const Kernel& kernel, const Soil& soil, WallParticles& walls, std::size_t w,
-                                const CellList& soil_cells) const {
-  WallStressSum sum;
-  for_neighbours(soil_cells, soil, walls.position(w), kernel.support2(), [&](std::size_t j, Vec2 r, double r2) {
-    const Dev t{soil.sxx[j] + soil.p[j], soil.syy[j] + soil.p[j], soil.sxy[j]};
-    sum.add(kernel.W(r2), soil.p[j], t, soil.rho[j], rho0_[static_cast<std::size_t>(soil.material[j])], k_.g, r,
-            k_.c_s);
-  });
-  const double inverse = sum.weight > least_weight * kernel.W(0.0) ? 1.0 / sum.weight : 0.0;
-  const double p = k_.numerics.tension_cutoff ? without_tension(sum.p * inverse) : sum.p * inverse;
-  const double growth = k_.walls.slip == WallSlip::no_slip ? deviator_growth(p, sum.p_soil * inverse) : 1.0;
-  Sym2 s = cauchy(p, (inverse * growth) * sum.t);
-  if (k_.walls.slip == WallSlip::free_slip) s = mirrored(s, walls.normal(w));
-  walls.p[w] = p, walls.compression[w] = sum.compression * inverse;
-  walls.sxx[w] = s.xx, walls.syy[w] = s.yy, walls.sxy[w] = s.xy;
-}
-
-template <class Kernel>
-Vec2 RightHandSide::soil_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i,
-                                      const CellList& soil_cells) const {
-  const ArtificialViscosity Pi{k_.numerics.alpha, k_.numerics.beta, k_.c_s, k_.h};
-  const Vec2 v_i = soil.velocity(i);
-  const double rho_i = soil.rho[i];
-  const Sym2 s_i = soil.stress(i);
-  Vec2 a;
-  for_neighbours(soil_cells, soil, soil.position(i), kernel.support2(), [&](std::size_t j, Vec2 r, double r2) {
-    const double rho_j = soil.rho[j];
-    const double viscous = Pi(dot(v_i - soil.velocity(j), r), r2, 0.5 * (rho_i + rho_j));
-    a += momentum_term(soil.m[j], s_i, soil.stress(j), rho_i * rho_j, viscous, kernel.F(r2) * r);
-  });
-  return a;
-}
-
-template <class Kernel>
-Vec2 RightHandSide::wall_acceleration(const Kernel& kernel, const Soil& soil, std::size_t i, const WallParticles& walls,
-                                      const CellList& wall_cells) const {
-  const ArtificialViscosity Pi{k_.numerics.alpha, k_.numerics.beta, k_.c_s, k_.h};
-  const bool only_approaching = k_.walls.contact == WallContact::approaching;
-  const Vec2 v_i = soil.velocity(i);
-  const double rho_i = soil.rho[i];
-  const Sym2 s_i = soil.stress(i);
-  Vec2 a;
-  for_neighbours(wall_cells, walls, soil.position(i), kernel.support2(), [&](std::size_t j, Vec2 r, double r2) {
-    const double b = mirror_ratio(distance_to_wall(walls, j, r), walls.depth[j], k_.walls.b_max);
-    const double v_dot_r = dot(wall_relative_velocity(v_i, walls.normal(j), b, k_.walls.slip), r);
-    if (only_approaching && v_dot_r >= 0.0) return;
-    a += momentum_term(rho_i * walls.volume, s_i, walls.stress(j), rho_i * rho_i, Pi(v_dot_r, r2, rho_i),
-                       kernel.F(r2) * r);
-  });
-  return a;
-}
-
-template <class Kernel>
-void RightHandSide::shepard(const Kernel& kernel, Soil& soil, const WallParticles& walls, const CellList& soil_cells,
-                            const CellList& wall_cells) const {
-  const double support2 = kernel.support2();
-  std::vector<double> filtered(soil.n_active);
-#pragma omp parallel for schedule(static, 128)
-  for (std::size_t i = 0; i < soil.n_active; ++i) {
-    const Vec2 x_i = soil.position(i);
-    const auto rho0 = [&](std::size_t j) { return rho0_[static_cast<std::size_t>(soil.material[j])]; };
-    ShepardSum sum;
-    for_neighbours(soil_cells, soil, x_i, support2, [&](std::size_t j, Vec2, double r2) {
-      sum.add(soil.m[j] / soil.rho[j], soil.rho[j] / rho0(j), kernel.W(r2));
-    });
-    for_neighbours(wall_cells, walls, x_i, support2, [&](std::size_t j, Vec2, double r2) {
-      if (walls.compression[j] > 0.0) sum.add(walls.volume, walls.compression[j], kernel.W(r2));
-    });
-    filtered[i] = rho0(i) * sum.value();
-  }
-  std::copy(filtered.begin(), filtered.end(), soil.rho.begin());
-}
-
-template <class Kernel>
-void RightHandSide::evaluate_plain(const Kernel& kernel, Soil& soil, WallParticles& walls, const CellList& soil_cells,
-                                   const CellList& wall_cells) const {
-#pragma omp parallel
-  {
-#pragma omp for schedule(static, chunk_size)
-    for (std::size_t i = 0; i < soil.n_active; ++i) {
-      Rates rates = soil_rates(kernel, soil, i, soil_cells);
-      add_wall_rates(kernel, soil, i, walls, wall_cells, rates);
-      apply_law(soil, i, rates);
-    }
-#pragma omp for schedule(static, chunk_size)
-    for (std::size_t w = 0; w < walls.size(); ++w) wall_stress(kernel, soil, walls, w, soil_cells);
-#pragma omp for schedule(static, chunk_size)
-    for (std::size_t i = 0; i < soil.n_active; ++i) {
-      const Vec2 a =
-          k_.g + soil_acceleration(kernel, soil, i, soil_cells) + wall_acceleration(kernel, soil, i, walls, wall_cells);
-      soil.ax[i] = a.x, soil.ay[i] = a.y;
-    }
-  }
-}
-
 void RightHandSide::evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) {
-  if (k_.numerics.kernel == KernelShape::cubic_spline)
-    evaluate_plain(CubicSpline{k_.h}, soil, walls, soil_cells, wall_cells);
-  else
-    evaluate_plain(WendlandC2{k_.h}, soil, walls, soil_cells, wall_cells);
+  with_kernel<double>(k_.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+    with_constitutive_model<double>(k_.rheology, [&]<class Model>(std::type_identity<Model>) {
+      Passes<Kernel>{k_, soil, walls, soil_cells, wall_cells}.template evaluate<Model>();
+    });
+  });
 }
 
 void RightHandSide::filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells,
                                    const CellList& wall_cells) const {
-  if (k_.numerics.kernel == KernelShape::cubic_spline)
-    shepard(CubicSpline{k_.h}, soil, walls, soil_cells, wall_cells);
-  else
-    shepard(WendlandC2{k_.h}, soil, walls, soil_cells, wall_cells);
+  with_kernel<double>(k_.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+    const Kernel kernel(1.0 / k_.h);
+    std::vector<double> filtered(soil.n_active);
+#pragma omp parallel for schedule(static, grain)
+    for (std::size_t i = 0; i < soil.n_active; ++i)
+      filtered[i] = filtered_density(kernel, k_, soil, i, walls, soil_cells, wall_cells);
+    std::copy(filtered.begin(), filtered.end(), soil.rho.begin());
+  });
 }
 
 }  // namespace talus

@@ -1,7 +1,6 @@
 // The first pass over the soil: velocity gradient, density rate, stress ([Z20] Eqs. 1-10).
 
 #include <cstdint>
-#include <limits>
 
 #include "sph/pair_loops.hpp"
 
@@ -10,96 +9,131 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sph/density_filter-inl.hpp"
+#include "sph/kernel-inl.hpp"
 #include "sph/pairs-inl.hpp"
-#include "sph/point_law-inl.hpp"
-#include "sph/wall_pair-inl.hpp"
+#include "sph/point_update-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
-template <class Kernel, bool Diffuse, bool OneMaterial, bool ByMass>
+/// The particles of one cluster, as update_point reads and writes them.
+struct ClusterPoint {
+  PackedFlow& f;
+  const FlowConstants& k;
+  Soil& soil;
+  double ahead;  ///< [s]
+  bool keep;
+  std::size_t i, count;
+
+  HWY_INLINE Lanes q() const { return load(f.soil.q.data() + i); }
+  HWY_INLINE Lanes tan_phi() const { return load_doubles(soil.tan_phi.data() + i, count); }
+  template <class Get>
+  HWY_INLINE Lanes constant(Get&& get) const {
+    if (k.soils.size() == 1) return Lanes(get(k.soils[0]));
+    HWY_ALIGN float value[lanes] = {};
+    for (std::size_t l = 0; l < count; ++l)
+      value[l] = static_cast<float>(get(k.soils[static_cast<std::size_t>(soil.material[i + l])]));
+    return load(value);
+  }
+  HWY_INLINE const ClusterPoint& elastic() const { return *this; }
+  HWY_INLINE void set_stress(Symmetric<Lanes> s, Lanes p) const {
+    store_groups(s.xx, s.yy, s.xy, p, f.soil.stress.data() + 4 * i, count);
+  }
+  HWY_INLINE void set_rates(Lanes drho, Lanes gamma_dot) const {
+    store(drho, f.soil.drho.data() + i, count);
+    store(gamma_dot, f.soil.gamma_dot.data() + i, count);
+  }
+
+  /// The elastic stress after `ahead` at the present rates.
+  HWY_INLINE Deviator<Lanes> value() const {
+    return fma(Lanes(ahead), Deviator<Lanes>{rate(f.soil.dtxx), rate(f.soil.dtyy), rate(f.soil.dtxy)},
+               Deviator<Lanes>{state(soil.txx), state(soil.tyy), state(soil.txy)});
+  }
+  HWY_INLINE void add(Deviator<Lanes> change) const {
+    if (!keep) return;
+    add_doubles(change.xx, soil.txx.data() + i, count);
+    add_doubles(change.yy, soil.tyy.data() + i, count);
+    add_doubles(change.xy, soil.txy.data() + i, count);
+  }
+  HWY_INLINE void set_rate(Deviator<Lanes> dt) const {
+    store(dt.xx, f.soil.dtxx.data() + i, count);
+    store(dt.yy, f.soil.dtyy.data() + i, count);
+    store(dt.xy, f.soil.dtxy.data() + i, count);
+  }
+
+ private:
+  HWY_INLINE Lanes rate(const std::vector<float>& array) const { return load(array.data() + i); }
+  HWY_INLINE Lanes state(const std::vector<double>& array) const { return load_doubles(array.data() + i, count); }
+};
+
+/// What a run has chosen: which sums the loop needs, and which kernel and constitutive model.
+template <class Kernel_, class Model_, bool Diffuse, bool OneMaterial, bool ByMass>
+struct StressChoice {
+  using Kernel = Kernel_;
+  using Model = Model_;
+  static constexpr bool diffuse = Diffuse, one_material = OneMaterial, by_mass = ByMass;
+};
+
+template <class Choice>
 HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
-  const D d;
-  const Kernel kernel(f.fixed.quantum / k.h);
-  const V quantum = set(f.fixed.quantum), b_max = set(k.walls.b_max), zero = hn::Zero(d);
-  const V volume_w = set(k.dx * k.dx), support2 = set(4.0 * k.h * k.h / (f.fixed.quantum * f.fixed.quantum));
-  const V to_L = set(-sigma_h2(k) * f.fixed.quantum),
-          to_diffusion = set(2.0 * k.numerics.delta * k.h * k.c_s * sigma_h2(k));
-  const bool only_approaching = k.walls.contact == WallContact::approaching,
-             smooth = k.walls.slip == WallSlip::free_slip;
+  const double quantum = f.fixed.quantum, sigma = sigma_h2<typename Choice::Kernel>(k.h);
+  const typename Choice::Kernel kernel(quantum / k.h);
+  const typename Choice::Model model(k.rheology);
+  const WallLaw<Lanes> wall(k.walls, quantum);
+  const Lanes volume_w(k.dx * k.dx), support2(4.0 * k.h * k.h / (quantum * quantum));
+  const Lanes to_L(-sigma * quantum), to_diffusion(2.0 * k.numerics.delta * k.h * k.c_s * sigma);
+  const auto minus_F = [&](Lanes r, Lanes r2) HWY_ATTR { return kernel.minus_F(r, r2); };
   for (std::size_t c = clusters.begin; c < clusters.end; ++c) {
     const std::size_t i = f.soil_clusters[c], count = f.soil_clusters[c + 1] - i;
-    V X, Y, vx, vy, volume, q, rho, material;
-    hn::LoadInterleaved4(d, f.soil.motion.data() + 4 * i, X, Y, vx, vy);
-    hn::LoadInterleaved4(d, f.soil.density.data() + 4 * i, volume, q, rho, material);
-    // Sums of V_j (v_j - v_i) r_ij F and V_j (q_j - q_i) F, with -F h^2/sigma for F.
-    V Lxx = zero, Lxy = zero, Lyx = zero, Lyy = zero, diffusion = zero;
-    V mass = zero;  // of m_j (v_j - v_i).r_ij F
-    const Neighbours near = neighbours(f.soil_soil, c);
-    Separations next = separations(X, Y, f.soil.motion.data(), near.begin);
-    for (const std::uint32_t* j = near.begin; j != near.end; j += block) {
-      const Separations r = next;
-      next = separations(X, Y, f.soil.motion.data(), j + block);
-      Block F;
-      kernel.minus_F(r, F);
-      for (std::size_t b = 0; b < block; ++b) {
-        const float* HWY_RESTRICT motion = f.soil.motion.data() + 4 * std::size_t{j[b]};
-        const float* HWY_RESTRICT density = f.soil.density.data() + 4 * std::size_t{j[b]};
-        const V x = r.x.v[b], y = r.y.v[b], VF = hn::Mul(set(density[0]), F.v[b]);
-        const V wx = hn::Mul(VF, hn::Sub(set(motion[2]), vx)), wy = hn::Mul(VF, hn::Sub(set(motion[3]), vy));
-        Lxx = hn::MulAdd(wx, x, Lxx), Lxy = hn::MulAdd(wx, y, Lxy);
-        Lyx = hn::MulAdd(wy, x, Lyx), Lyy = hn::MulAdd(wy, y, Lyy);
-        if constexpr (ByMass) mass = hn::MulAdd(set(density[2]), hn::MulAdd(wx, x, hn::Mul(wy, y)), mass);
-        if constexpr (Diffuse) {
-          V dq = hn::Sub(set(density[1]), q);
-          if constexpr (!OneMaterial) dq = hn::IfThenElseZero(hn::Eq(set(density[3]), material), dq);
-          diffusion = hn::MulAdd(VF, dq, diffusion);
-        }
+    Vector<Lanes> x, v;
+    Lanes volume, q, rho, material;
+    load_groups(f.soil.motion.data() + 4 * i, x.x, x.y, v.x, v.y);
+    load_groups(f.soil.density.data() + 4 * i, volume, q, rho, material);
+    auto sums = FlowRateSums<Lanes>::zero();
+    const auto add_soil = [&](const Pair& pair) HWY_ATTR {
+      const float* HWY_RESTRICT motion = f.soil.motion.data() + 4 * pair.j;
+      const float* HWY_RESTRICT density = f.soil.density.data() + 4 * pair.j;
+      const Lanes VF = Lanes(density[0]) * pair.kernel;
+      sums.add(VF, Lanes(density[2]), v - Vector<Lanes>{Lanes(motion[2]), Lanes(motion[3])}, pair.r, Choice::by_mass);
+      if constexpr (Choice::diffuse) {
+        Lanes q_ji = Lanes(density[1]) - q;
+        if constexpr (!Choice::one_material) q_ji = select_or_zero(Lanes(density[3]) == material, q_ji);
+        sums.diffusion = add_diffusion(sums.diffusion, VF, q_ji);
       }
-    }
-    V distance = set(std::numeric_limits<float>::infinity());
-    const Neighbours wall = neighbours(f.soil_wall, c);
-    for (const std::uint32_t* j = wall.begin; j != wall.end; j += block) {
-      const Separations r = separations(X, Y, f.walls.place.data(), j);
-      Block F;
-      kernel.minus_F(r, F);
-      for (std::size_t b = 0; b < block; ++b) {
-        const std::size_t group = 4 * std::size_t{j[b]};
-        const V x = r.x.v[b], y = r.y.v[b];
-        const WallPair w =
-            wall_pair(x, y, vx, vy, f.walls.place.data() + group, f.walls.stress[group + 3], quantum, b_max, smooth);
-        M acts = hn::Lt(r.s.v[b], support2);
-        if (only_approaching) acts = hn::And(acts, hn::Lt(w.v_dot_r, zero));
-        const V VF = hn::IfThenElseZero(acts, hn::Mul(volume_w, F.v[b]));
-        const V wx = hn::Mul(VF, w.vx), wy = hn::Mul(VF, w.vy);
-        Lxx = hn::NegMulAdd(wx, x, Lxx), Lxy = hn::NegMulAdd(wx, y, Lxy);
-        Lyx = hn::NegMulAdd(wy, x, Lyx), Lyy = hn::NegMulAdd(wy, y, Lyy);
-        if constexpr (ByMass) mass = hn::NegMulAdd(rho, hn::MulAdd(wx, x, hn::Mul(wy, y)), mass);
-        distance = hn::IfThenElse(acts, hn::Min(distance, w.distance), distance);
-      }
-    }
-    // -drho/rho: the trace of L where the volumes of neighbours count, [Z20] Eq. 1 where their masses do.
-    const V expansion = ByMass ? hn::Div(hn::Mul(to_L, mass), rho) : hn::Add(hn::Mul(to_L, Lxx), hn::Mul(to_L, Lyy));
-    apply_law(f, k, soil, ahead, keep, i, count,
-              {hn::Mul(to_L, Lxx), hn::Mul(to_L, Lxy), hn::Mul(to_L, Lyx), hn::Mul(to_L, Lyy), expansion,
-               hn::Mul(to_diffusion, diffusion), distance});
+    };
+    const auto add_wall = [&](const Pair& pair) HWY_ATTR {
+      const WallPair<Lanes> w = wall.pair(pair.r, v, wall_particle(f.walls, pair.j));
+      auto acts = pair.r2 < support2;
+      if (wall.only_approaching) acts = acts & (w.v_dot_r < Lanes(0.0));
+      sums.add(select_or_zero(acts, volume_w * pair.kernel), rho, w.v_ij, pair.r, Choice::by_mass);
+      sums.wall_distance = select(acts, min(sums.wall_distance, w.distance), sums.wall_distance);
+    };
+    for_neighbours<true>(x, f.soil.motion.data(), neighbours(f.soil_soil, c), minus_F, add_soil);
+    for_neighbours<false>(x, f.walls.place.data(), neighbours(f.soil_wall, c), minus_F, add_wall);
+    update_point(k, model, sums.rates(to_L, to_diffusion, Choice::by_mass, rho),
+                 ClusterPoint{f, k, soil, ahead, keep, i, count});
   }
 }
 
 void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
-  with_kernel(k, [&]<class Kernel>(Kernel*) {
-    const auto run = [&]<bool Diffuse, bool OneMaterial>() {
-      if (k.numerics.continuity == Continuity::mass)
-        stress_loop<Kernel, Diffuse, OneMaterial, true>(f, k, soil, ahead, keep, clusters);
+  const bool diffuse = k.numerics.density_filter == DensityFilter::delta_sph, one_material = k.soils.size() == 1,
+             by_mass = k.numerics.continuity == Continuity::mass;
+  with_kernel<Lanes>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+    with_constitutive_model<Lanes>(k.rheology, [&]<class Model>(std::type_identity<Model>) {
+      const auto run = [&]<bool Diffuse, bool OneMaterial>() {
+        if (by_mass)
+          stress_loop<StressChoice<Kernel, Model, Diffuse, OneMaterial, true>>(f, k, soil, ahead, keep, clusters);
+        else
+          stress_loop<StressChoice<Kernel, Model, Diffuse, OneMaterial, false>>(f, k, soil, ahead, keep, clusters);
+      };
+      if (!diffuse)
+        run.template operator()<false, true>();
+      else if (one_material)
+        run.template operator()<true, true>();
       else
-        stress_loop<Kernel, Diffuse, OneMaterial, false>(f, k, soil, ahead, keep, clusters);
-    };
-    if (k.numerics.density_filter != DensityFilter::delta_sph)
-      run.template operator()<false, true>();
-    else if (k.laws.size() == 1)
-      run.template operator()<true, true>();
-    else
-      run.template operator()<true, false>();
+        run.template operator()<true, false>();
+    });
   });
 }
 

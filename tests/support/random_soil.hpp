@@ -61,7 +61,7 @@ inline FlowConstants constants(double dx, Vec2 g = {0.0, -9.81},
   k.h = 1.2 * dx, k.dx = dx, k.c_s = 50, k.g = g;
   k.numerics.precision =
       Precision::full;  // formulas are tested to the last digits; the vectorised loops have tests of their own
-  k.laws = point_laws(materials, {}, k.c_s);
+  k.soils = constitutive_parameters(materials, {}, k.c_s);
   return k;
 }
 

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "material/equation_of_state.hpp"
 
 namespace talus {
@@ -23,8 +25,8 @@ TEST(EquationOfState, DensityInvertsPressure) {
 }
 
 TEST(EquationOfState, LooseSoilCarriesNoTension) {
-  EXPECT_EQ(without_tension(-5.0), 0.0);
-  EXPECT_EQ(without_tension(5.0), 5.0);
+  EXPECT_EQ(apply_tension_cutoff(-5.0), 0.0);
+  EXPECT_EQ(apply_tension_cutoff(5.0), 5.0);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     return WallPair{d_i, vx, vy, std::hypot(x, y) < 2 * k.h && (k.walls.contact == WallContact::always || approaches)};
   };
   for (std::size_t i = 0; i < n; ++i) {
-    const PointLaw& law = k.laws[static_cast<std::size_t>(s.material[i])];
+    const ConstitutiveParameters& law = k.soils[static_cast<std::size_t>(s.material[i])];
     double Lxx = 0, Lxy = 0, Lyx = 0, Lyy = 0, mass_form = 0, diffusion = 0;
     for (std::size_t j = 0; j < n; ++j) {
       const double x = s.x[i] - s.x[j], y = s.y[i] - s.y[j], d = std::hypot(x, y);
@@ -97,7 +97,7 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     const double tau_y = law.c + std::max(p, 0.0) * tan_phi;
     r.p[i] = p;
     if (k.rheology.yield == Yield::regularized) {
-      const double eta = law.bingham.eta + tau_y / std::max(r.gamma_dot[i], 1e-3);
+      const double eta = law.eta + tau_y / std::max(r.gamma_dot[i], 1e-3);
       r.sxx[i] = -p + 2 * eta * exx, r.syy[i] = -p + 2 * eta * eyy, r.sxy[i] = 2 * eta * exy;
     } else {
       double txx = s.txx[i], tyy = s.tyy[i], txy = s.txy[i];
@@ -109,15 +109,15 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       r.dtxx[i] = 2 * omega * txy + 2 * law.G * exx;
       r.dtyy[i] = -2 * omega * txy + 2 * law.G * eyy;
       r.dtxy[i] = omega * tyy - txx * omega + 2 * law.G * exy;
-      r.sxx[i] = -p + txx + 2 * law.bingham.eta * exx, r.syy[i] = -p + tyy + 2 * law.bingham.eta * eyy;
-      r.sxy[i] = txy + 2 * law.bingham.eta * exy;
+      r.sxx[i] = -p + txx + 2 * law.eta * exx, r.syy[i] = -p + tyy + 2 * law.eta * eyy;
+      r.sxy[i] = txy + 2 * law.eta * exy;
     }
   }
   for (std::size_t q = 0; q < nw; ++q) {
     double sum = 0, p = 0, p_soil = 0, txx = 0, tyy = 0, txy = 0, compression = 0;
     for (std::size_t j = 0; j < n; ++j) {
       const double x = w.x[q] - s.x[j], y = w.y[q] - s.y[j], weight = W(std::hypot(x, y));
-      const double g_r = k.g.x * x + k.g.y * y, rho0 = k.laws[static_cast<std::size_t>(s.material[j])].eos.rho0;
+      const double g_r = k.g.x * x + k.g.y * y, rho0 = k.soils[static_cast<std::size_t>(s.material[j])].eos.rho0;
       sum += weight, p_soil += weight * r.p[j], p += weight * (r.p[j] + s.rho[j] * g_r);
       compression += weight * (s.rho[j] / rho0 + g_r / (k.c_s * k.c_s));
       txx += weight * (r.sxx[j] + r.p[j]), tyy += weight * (r.syy[j] + r.p[j]), txy += weight * r.sxy[j];

@@ -1,12 +1,13 @@
 #include <gtest/gtest.h>
 
 #include "random_soil.hpp"
-#include "sph/wall.hpp"
+#include "sph/wall-inl.hpp"
 
 namespace talus {
 namespace {
 
 using namespace testing_support;
+using namespace HWY_NAMESPACE;
 
 TEST(Wall, MirroredVelocityVanishesOnTheWallLine) {
   // Linear between soil (d_i above, v) and wall particle (d_j below, v - b v): zero at the line when b = 1 + d_j/d_i.
@@ -22,11 +23,12 @@ TEST(Wall, MirrorRatioIsCapped) {
 }
 
 TEST(Wall, SmoothWallKeepsTheTangentialVelocity) {
-  const Vec2 n{0.6, 0.8}, t{-0.8, 0.6}, v{3, 1};
-  const Vec2 r = wall_relative_velocity(v, n, 1.4, WallSlip::free_slip);
-  EXPECT_NEAR(dot(r, t), 0.0, 1e-15);
-  EXPECT_NEAR(dot(r, n), 1.4 * dot(v, n), 1e-15);
-  EXPECT_EQ(wall_relative_velocity(v, n, 1.4, WallSlip::no_slip), 1.4 * v);
+  const Vector<double> n{0.6, 0.8}, t{-0.8, 0.6}, v{3, 1};
+  const auto smooth = wall_relative_velocity(v, n, 1.4, true), rough = wall_relative_velocity(v, n, 1.4, false);
+  EXPECT_NEAR(dot(smooth, t), 0.0, 1e-15);
+  EXPECT_NEAR(dot(smooth, n), 1.4 * dot(v, n), 1e-15);
+  EXPECT_EQ(rough.x, 1.4 * v.x);
+  EXPECT_EQ(rough.y, 1.4 * v.y);
 }
 
 TEST(Wall, InterfaceYieldsAtTheSmallerAngleWithinOneSpacing) {
@@ -37,12 +39,21 @@ TEST(Wall, InterfaceYieldsAtTheSmallerAngleWithinOneSpacing) {
 
 TEST(Wall, ExtrapolationIsExactForHydrostaticPressure) {
   // p = p0 - rho |g| y in the soil continues into the wall with the same slope.
-  const Vec2 g{0, -9.81};
-  WallStressSum sum;
-  const Vec2 wall{0.0, -0.05};
-  for (const Vec2 x : {Vec2{0.02, 0.05}, Vec2{-0.1, 0.05}, Vec2{0.04, 0.15}})
-    sum.add(1.0 / (1.0 + norm2(x)), 5000 - 2000 * 9.81 * x.y, {}, 2000, 2000, g, wall - x, 50);
+  const Vector<double> g{0, -9.81}, wall{0.0, -0.05};
+  auto sum = WallStressSum<double>::zero();
+  for (const Vector<double> x : {Vector<double>{0.02, 0.05}, {-0.1, 0.05}, {0.04, 0.15}}) {
+    const double p = 5000 - 2000 * 9.81 * x.y;
+    sum.add(1.0 / (1.0 + dot(x, x)), {{-p, -p, 0}, p, 2000, 0}, dot(g, wall - x), 1.0 / (50 * 50));
+  }
   EXPECT_NEAR(sum.p / sum.weight, 5000 + 2000 * 9.81 * 0.05, 1e-9);
+  EXPECT_NEAR(sum.value(FlowConstants{}, {0, 1}).p, 5000 + 2000 * 9.81 * 0.05, 1e-9);
+}
+
+TEST(Wall, DeviatorGrowsWithThePressureUpToThreefold) {
+  EXPECT_DOUBLE_EQ(deviator_growth(150.0, 100.0), 1.5);
+  EXPECT_DOUBLE_EQ(deviator_growth(900.0, 100.0), 3.0);
+  EXPECT_DOUBLE_EQ(deviator_growth(-5.0, 100.0), 0.0);
+  EXPECT_DOUBLE_EQ(deviator_growth(50.0, 0.0), 1.0);
 }
 
 /// Soil sliding along a flat wall at 3 m/s under pressure; returns it evaluated.
@@ -56,7 +67,7 @@ Soil sliding(WallSlip slip, double phi_wall) {
   for (std::size_t i = 0; i < soil.size(); ++i) {
     soil.x[i] = static_cast<double>(i % 20) * dx, soil.y[i] = static_cast<double>(i / 20) * dx;
     soil.vx[i] = 3, soil.vy[i] = 0, soil.m[i] = 2000 * dx * dx, soil.tan_phi[i] = 0.5;
-    soil.rho[i] = k.laws[0].eos.density(1e4);
+    soil.rho[i] = k.soils[0].eos.density(1e4);
   }
   WallParticles walls = flat_walls(20, dx);
   const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);

@@ -1,0 +1,65 @@
+// Yield stress and the regularised Bingham model for every number type. Included once for every instruction set.
+
+#if defined(TALUS_MATERIAL_BINGHAM_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TALUS_MATERIAL_BINGHAM_INL
+#undef TALUS_MATERIAL_BINGHAM_INL
+#else
+#define TALUS_MATERIAL_BINGHAM_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include "material/rheology.hpp"
+#include "math/tensor-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::HWY_NAMESPACE {
+
+/// gamma_dot = sqrt(2 dev(e):dev(e)): simple shear v_x(y) gives |dv_x/dy|, as Eq. 5 needs.
+/// ShearRate::paper: sqrt(2/3 dev(e):dev(e)), [Z20] Eq. 7 as printed; the yielded stress comes out sqrt(3) times
+/// larger.
+template <class Real>
+HWY_INLINE Real shear_rate(Deviator<Real> e, ShearRate norm) {
+  return sqrt(Real(norm == ShearRate::paper ? 2.0 / 3.0 : 2.0) * double_dot(e));
+}
+
+/// tau_y = c + max(p, 0) tan(phi)                                          [Z20] Eq. 5
+template <class Real>
+HWY_INLINE Real yield_stress(Real c, Real tan_phi, Real p) {
+  return fma(max(p, Real(0.0)), tan_phi, c);
+}
+
+/// What a constitutive model is told of a point.
+template <class Real>
+struct PointState {
+  Deviator<Real> e;  ///< deviatoric strain rate [1/s]
+  Real two_spin;     ///< 2 omega_xy [1/s]
+  Real gamma_dot;    ///< shear rate [1/s]
+  Real tau_y;        ///< yield stress [Pa]
+  Real eta;          ///< viscosity once it has yielded [Pa s]
+  Real two_G;        ///< twice the numerical shear modulus [Pa]
+};
+
+/// Regularised Bingham: an equivalent viscosity, large but finite where the soil does not yield, so that it creeps.
+template <class Real>
+struct RegularisedBingham {
+  Real gamma_dot_min;  ///< floor of the shear rate [1/s], > 0
+
+  explicit HWY_INLINE RegularisedBingham(const Rheology& rheology) : gamma_dot_min(rheology.gamma_dot_min) {}
+
+  /// eta' = eta + tau_y / max(gamma_dot, gamma_dot_min)                    [Z20] Eq. 6
+  HWY_INLINE Real viscosity(Real eta, Real tau_y, Real gamma_dot) const {
+    return eta + tau_y / max(gamma_dot, gamma_dot_min);
+  }
+  /// t = 2 eta' dev(e)                                                     [Z20] Eq. 10, deviator written out
+  template <class ElasticStress>
+  HWY_INLINE Deviator<Real> stress(const PointState<Real>& at, ElasticStress&&) const {
+    const Real zero(0.0), eta = viscosity(at.eta, at.tau_y, at.gamma_dot);
+    return fma(eta + eta, at.e, Deviator<Real>{zero, zero, zero});
+  }
+};
+
+}  // namespace talus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,108 @@
+// Trace, deviator, magnitude: written here and nowhere else. Included once for every instruction set.
+
+#if defined(TALUS_MATH_TENSOR_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TALUS_MATH_TENSOR_INL
+#undef TALUS_MATH_TENSOR_INL
+#else
+#define TALUS_MATH_TENSOR_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include "math/number.hpp"
+#include "math/tensor.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::HWY_NAMESPACE {
+
+using talus::fma;  // beside those of vectors and tensors
+
+template <class Real>
+HWY_INLINE Vector<Real> operator-(Vector<Real> a, Vector<Real> b) {
+  return {a.x - b.x, a.y - b.y};
+}
+template <class Real>
+HWY_INLINE Vector<Real> operator*(Real s, Vector<Real> a) {
+  return {s * a.x, s * a.y};
+}
+template <class Real>
+HWY_INLINE Real dot(Vector<Real> a, Vector<Real> b) {
+  return fma(a.x, b.x, a.y * b.y);
+}
+/// a s + b
+template <class Real>
+HWY_INLINE Vector<Real> fma(Real s, Vector<Real> a, Vector<Real> b) {
+  return {fma(s, a.x, b.x), fma(s, a.y, b.y)};
+}
+
+template <class Real>
+HWY_INLINE Symmetric<Real> operator+(Symmetric<Real> a, Symmetric<Real> b) {
+  return {a.xx + b.xx, a.yy + b.yy, a.xy + b.xy};
+}
+template <class Real>
+HWY_INLINE Vector<Real> operator*(Symmetric<Real> a, Vector<Real> v) {
+  return {fma(a.xx, v.x, a.xy * v.y), fma(a.xy, v.x, a.yy * v.y)};
+}
+
+template <class Real>
+HWY_INLINE Deviator<Real> operator+(Deviator<Real> a, Deviator<Real> b) {
+  return {a.xx + b.xx, a.yy + b.yy, a.xy + b.xy};
+}
+template <class Real>
+HWY_INLINE Deviator<Real> operator*(Deviator<Real> a, Real s) {
+  return {a.xx * s, a.yy * s, a.xy * s};
+}
+template <class Real>
+HWY_INLINE Deviator<Real> fma(Real s, Deviator<Real> a, Deviator<Real> b) {
+  return {fma(s, a.xx, b.xx), fma(s, a.yy, b.yy), fma(s, a.xy, b.xy)};
+}
+
+template <class Real>
+HWY_INLINE Real trace(Gradient<Real> L) {
+  return L.xx + L.yy;
+}
+/// 2 omega_xy of omega = (L - L^T)/2.
+template <class Real>
+HWY_INLINE Real two_spin(Gradient<Real> L) {
+  return L.xy - L.yx;
+}
+/// dev(e) = e - tr(e)/3 I with the 3D trace, e = (L + L^T)/2                 [Z20] Eqs. 8, 9
+/// L has the sign of v_j - v_i; the e of the printed Eq. 9 is minus the strain rate.
+template <class Real>
+HWY_INLINE Deviator<Real> deviatoric_strain_rate(Gradient<Real> L) {
+  const Real third(1.0 / 3.0), tr = trace(L);
+  return {fnma(third, tr, L.xx), fnma(third, tr, L.yy), Real(0.5) * (L.xy + L.yx)};
+}
+
+/// d:d over all nine components.
+template <class Real>
+HWY_INLINE Real double_dot(Deviator<Real> d) {
+  const Real zz = d.xx + d.yy;
+  return fma(d.xx, d.xx, fma(d.yy, d.yy, fma(zz, zz, Real(2.0) * (d.xy * d.xy))));
+}
+/// sqrt(t:t/2): the shear stress of simple shear.
+template <class Real>
+HWY_INLINE Real magnitude(Deviator<Real> t) {
+  return sqrt(Real(0.5) * double_dot(t));
+}
+
+/// sigma = -p I + t.
+template <class Real>
+HWY_INLINE Symmetric<Real> cauchy(Real p, Deviator<Real> t) {
+  return {t.xx - p, t.yy - p, t.xy};
+}
+
+/// s with its shear on the plane of unit normal n reversed, as a frictionless wall mirrors it:
+/// s - 2 s_tn (t n^T + n t^T), t = (-n_y, n_x).
+template <class Real>
+HWY_INLINE Symmetric<Real> mirrored(Symmetric<Real> s, Vector<Real> n) {
+  const Vector<Real> s_n = s * n;
+  const Real two_s_tn = Real(2.0) * fms(n.x, s_n.y, n.y * s_n.x);
+  const Real xx = (two_s_tn * Real(2.0)) * (n.x * n.y);
+  return {s.xx + xx, s.yy - xx, fnma(two_s_tn, fms(n.x, n.x, n.y * n.y), s.xy)};
+}
+
+}  // namespace talus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,80 @@
+// Velocity gradient and continuity, for every number type. Included once for every instruction set.
+
+#if defined(TALUS_SPH_CONTINUITY_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TALUS_SPH_CONTINUITY_INL
+#undef TALUS_SPH_CONTINUITY_INL
+#else
+#define TALUS_SPH_CONTINUITY_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <limits>
+
+#include "math/tensor-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::HWY_NAMESPACE {
+
+/// L_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij, V_j = m_j/rho_j               [Z20] Eq. 9
+/// Adds the term of one neighbour, grad_i W_ij = F r_ij. The paper prints v_i - v_j, which is minus the velocity
+/// gradient and would make Eq. 10 anti-viscous.
+template <class Real>
+HWY_INLINE void add_velocity_gradient(Gradient<Real>& L, Vector<Real> VF_v_ij, Vector<Real> r_ij) {
+  L.xx = fnma(VF_v_ij.x, r_ij.x, L.xx);
+  L.xy = fnma(VF_v_ij.x, r_ij.y, L.xy);
+  L.yx = fnma(VF_v_ij.y, r_ij.x, L.yx);
+  L.yy = fnma(VF_v_ij.y, r_ij.y, L.yy);
+}
+
+/// drho_i/dt = sum_j m_j (v_i - v_j) . grad_i W_ij                          [Z20] Eq. 1
+/// Adds the term of one neighbour, m_j = rho_j V_j. With rho_i instead of rho_j it is the volume form (Colagrossi &
+/// Landrini 2003), which is the same where the density is uniform and stays right across the layers of a slide; that
+/// form is -rho_i tr(L_i) and needs no sum of its own.
+template <class Real>
+HWY_INLINE Real add_continuity(Real drho, Real rho_j, Vector<Real> VF_v_ij, Vector<Real> r_ij) {
+  return fma(rho_j, dot(VF_v_ij, r_ij), drho);
+}
+
+/// What the neighbours of a particle do to its density and deformation.
+template <class Real>
+struct FlowRates {
+  Gradient<Real> L;    ///< velocity gradient [1/s]
+  Real expansion;      ///< -(drho/dt)/rho without diffusion [1/s]
+  Real diffusion;      ///< rate of rho/rho0 by delta-SPH [1/s]
+  Real wall_distance;  ///< to the line of the nearest wall particle that acts [m]
+};
+
+/// Sums over the neighbours, with -F h^2/sigma for F.
+template <class Real>
+struct FlowRateSums {
+  Gradient<Real> L;
+  Real drho;           ///< of the mass form, [Z20] Eq. 1
+  Real diffusion;      ///< of delta-SPH
+  Real wall_distance;  ///< to the line of the nearest wall particle that acts [m]
+
+  static HWY_INLINE FlowRateSums zero() {
+    const Real zero(0.0);
+    return {{zero, zero, zero, zero}, zero, zero, Real(std::numeric_limits<double>::infinity())};
+  }
+
+  /// Adds one neighbour, soil or wall; `by_mass`: [Z20] Eq. 1 as printed, not the volume form.
+  HWY_INLINE void add(Real VF, Real rho_j, Vector<Real> v_ij, Vector<Real> r_ij, bool by_mass) {
+    const Vector<Real> VF_v_ij = VF * v_ij;
+    add_velocity_gradient(L, VF_v_ij, r_ij);
+    if (by_mass) drho = add_continuity(drho, rho_j, VF_v_ij, r_ij);
+  }
+
+  /// @param to_L          -sigma/h^2 in the unit of the distances
+  /// @param to_diffusion  2 delta h c_s sigma/h^2
+  HWY_INLINE FlowRates<Real> rates(Real to_L, Real to_diffusion, bool by_mass, Real rho) const {
+    const Gradient<Real> scaled{to_L * L.xx, to_L * L.xy, to_L * L.yx, to_L * L.yy};
+    const Real expansion = by_mass ? (Real(0.0) - to_L * drho) / rho : trace(scaled);
+    return {scaled, expansion, to_diffusion * diffusion, wall_distance};
+  }
+};
+
+}  // namespace talus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,151 @@
+// How a fixed wall particle acts on the soil: its virtual velocity and its extrapolated stress. For every number type;
+// included once for every instruction set.
+
+#if defined(TALUS_SPH_WALL_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TALUS_SPH_WALL_INL
+#undef TALUS_SPH_WALL_INL
+#else
+#define TALUS_SPH_WALL_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include "math/tensor-inl.hpp"
+#include "sph/flow_constants.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace talus::HWY_NAMESPACE {
+
+/// b = min(b_max, 1 + d_j/d_i): the velocity mirrored about the wall line over the soil's own.
+/// Takeda 1994, Morris 1997 (b_max = 1.5). d_i: soil to wall line, d_j: wall particle to wall line, both [m].
+template <class Real>
+HWY_INLINE Real mirror_ratio(Real d_i, Real d_j, Real b_max) {
+  const Real gap = max(d_i, Real(1e-6) * d_j);  // a particle on the line, or through it, gets b_max
+  return min(b_max, Real(1.0) + d_j / gap);
+}
+
+/// v_ij of a soil-wall pair: b v_i for a rough wall; only its normal part for a smooth one.
+template <class Real>
+HWY_INLINE Vector<Real> wall_relative_velocity(Vector<Real> v_i, Vector<Real> n, Real b, bool smooth) {
+  return smooth ? (b * dot(v_i, n)) * n : b * v_i;
+}
+
+/// A wall particle as a soil particle sees it.
+template <class Real>
+struct WallParticle {
+  Vector<Real> normal;  ///< unit normal of the wall, towards the soil
+  Real depth;           ///< distance to the wall line [m]
+};
+
+/// A soil-wall pair.
+template <class Real>
+struct WallPair {
+  Real distance;      ///< of the soil particle to the wall line, by the tangent at the wall particle's foot [m]
+  Vector<Real> v_ij;  ///< relative velocity [m/s]
+  Real v_dot_r;       ///< [m/s times the unit of the distances]
+};
+
+/// The walls of a run.
+template <class Real>
+struct WallLaw {
+  Real b_max;  ///< largest mirror ratio [-]
+  Real unit;   ///< of the distances [m]
+  bool smooth, only_approaching;
+
+  /// @param metres  unit of the distances [m]
+  HWY_INLINE WallLaw(const Walls& walls, double metres)
+      : b_max(walls.b_max),
+        unit(metres),
+        smooth(walls.slip == WallSlip::free_slip),
+        only_approaching(walls.contact == WallContact::approaching) {}
+
+  HWY_INLINE WallPair<Real> pair(Vector<Real> r_ij, Vector<Real> v_i, const WallParticle<Real>& j) const {
+    const Real distance = fms(unit, dot(r_ij, j.normal), j.depth);
+    const Real b = mirror_ratio(distance, j.depth, b_max);
+    const Vector<Real> v_ij = wall_relative_velocity(v_i, j.normal, b, smooth);
+    return {distance, v_ij, dot(v_ij, r_ij)};
+  }
+};
+
+/// A wall that is smoother than the soil is a thin interface layer with the wall's friction angle (after Desai 1984):
+/// soil nearer than `thickness` to the wall line yields at the smaller of both.
+template <class Real>
+HWY_INLINE Real interface_tan_phi(Real tan_phi, Real tan_phi_wall, Real d_i, Real thickness) {
+  return select(d_i < thickness, min(tan_phi, tan_phi_wall), tan_phi);
+}
+/// Wide enough to hold most of what the kernel sees from the wall: one row of particles at h = 1.2 dx, two at 1.5 dx.
+inline double interface_thickness(double h) { return 1.1 * h; }
+
+/// The most that the deviatoric stress may grow on its way to a wall particle [-].
+inline constexpr double max_deviator_growth = 3.0;
+
+/// By how much the soil's deviatoric stress grows on its way to a wall particle: as the pressure does there, at most
+/// threefold. Under its own weight a layer carries shear in proportion to its depth, as it carries pressure;
+/// extrapolated as a constant the shear would lack that of half a support, and a layer of cohesionless soil would slide
+/// at 23 instead of 25 degrees. For rough walls only: along a wall that is smoother than the soil, the wall's friction
+/// bounds the shear.
+/// @param p_wall  extrapolated pressure [Pa]
+/// @param p_soil  the soil's, interpolated without its hydrostatic part [Pa]
+template <class Real>
+HWY_INLINE Real deviator_growth(Real p_wall, Real p_soil) {
+  const Real growth = min(max(p_wall / p_soil, Real(0.0)), Real(max_deviator_growth));
+  return select(p_soil > Real(0.0), growth, Real(1.0));
+}
+
+/// A wall particle that sees less of the soil than this share of W(0) sees nothing: in single precision the inverse of
+/// a kernel sum that is almost zero would be infinite.
+inline constexpr double min_kernel_sum = 1e-24;
+
+/// The soil's stress at a wall particle.
+template <class Real>
+struct WallStress {
+  Symmetric<Real> s;   ///< [Pa]
+  Real p;              ///< [Pa]
+  Real density_ratio;  ///< rho/rho0 [-]; 0 where no soil is near
+};
+
+/// Shepard interpolation of the soil's stress to a wall particle, pressure with the hydrostatic term of Adami 2012:
+/// p_w = sum_f (p_f + rho_f g.r_wf) W / sum_f W; the deviator as sum_f t_f W / sum_f W, enlarged by deviator_growth.
+template <class Real>
+struct WallStressSum {
+  Real weight, p, p_soil, q;
+  Deviator<Real> t;
+
+  static HWY_INLINE WallStressSum zero() {
+    const Real zero(0.0);
+    return {zero, zero, zero, zero, {zero, zero, zero}};
+  }
+
+  /// What a soil particle gives.
+  struct Source {
+    Symmetric<Real> s;  ///< Cauchy stress [Pa]
+    Real p, rho, q;     ///< pressure [Pa], density [kg/m3], rho/rho0 - 1 [-]
+  };
+
+  /// @param W    kernel over its normalisation
+  /// @param g_r  g.r_wf [m2/s2]; the hydrostatic part of q is linearised: rho/rho0 grows by g.r/c_s^2
+  HWY_INLINE void add(Real W, const Source& f, Real g_r, Real per_c2) {
+    weight = weight + W;
+    p_soil = fma(W, f.p, p_soil);
+    p = fma(W, fma(f.rho, g_r, f.p), p);
+    q = fma(W, fma(g_r, per_c2, f.q), q);
+    t = fma(W, Deviator<Real>{f.s.xx + f.p, f.s.yy + f.p, f.s.xy}, t);
+  }
+
+  HWY_INLINE WallStress<Real> value(const FlowConstants& k, Vector<Real> normal) const {
+    const auto covered = weight > Real(min_kernel_sum);
+    const Real inverse = select_or_zero(covered, Real(1.0) / weight);
+    Real p_wall = p * inverse;
+    if (k.numerics.tension_cutoff) p_wall = max(p_wall, Real(0.0));
+    const Real share =
+        k.walls.slip == WallSlip::no_slip ? inverse * deviator_growth(p_wall, p_soil * inverse) : inverse;
+    Symmetric<Real> s{fms(t.xx, share, p_wall), fms(t.yy, share, p_wall), t.xy * share};
+    if (k.walls.slip == WallSlip::free_slip) s = mirrored(s, normal);
+    return {s, p_wall, select_or_zero(covered, fma(q, inverse, Real(1.0)))};
+  }
+};
+
+}  // namespace talus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
