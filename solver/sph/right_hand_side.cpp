@@ -1,13 +1,15 @@
 #include "sph/right_hand_side.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "sph/artificial_viscosity-inl.hpp"
-#include "sph/density_filter-inl.hpp"
+#include "sph/density_diffusion-inl.hpp"
 #include "sph/kernel-inl.hpp"
 #include "sph/momentum-inl.hpp"
 #include "sph/point_update-inl.hpp"
+#include "sph/shepard_filter.hpp"
 
 namespace talus {
 namespace {
@@ -168,17 +170,17 @@ struct Passes {
 };
 
 /// Shepard-filtered density of one particle [kg/m3].
-template <class Kernel>
-double filtered_density(const Kernel& kernel, const FlowConstants& k, const Soil& soil, std::size_t i,
-                        const WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) {
+double filtered_density(const FlowConstants& k, const Soil& soil, std::size_t i, const WallParticles& walls,
+                        const CellList& soil_cells, const CellList& wall_cells) {
   const double support2 = 4.0 * k.h * k.h;
+  const ShepardKernel kernel(k.numerics.kernel, k.h);
   const auto rho0 = [&](std::size_t j) { return k.soils[static_cast<std::size_t>(soil.material[j])].eos.rho0; };
-  ShepardSum<double> sum{0.0, 0.0};
+  ShepardSum sum;
   for_neighbours(soil_cells, soil, soil.position(i), support2, [&](std::size_t j, Vector<double>, double r2) {
-    sum.add(soil.m[j] / soil.rho[j], soil.rho[j] / rho0(j), kernel.W(std::sqrt(r2)));
+    sum.add(soil.m[j] / soil.rho[j], soil.rho[j] / rho0(j), kernel.W(r2));
   });
   for_neighbours(wall_cells, walls, soil.position(i), support2, [&](std::size_t j, Vector<double>, double r2) {
-    if (walls.compression[j] > 0.0) sum.add(walls.volume, walls.compression[j], kernel.W(std::sqrt(r2)));
+    if (walls.compression[j] > 0.0) sum.add(walls.volume, walls.compression[j], kernel.W(r2));
   });
   return rho0(i) * sum.value();
 }
@@ -195,14 +197,11 @@ void RightHandSide::evaluate(Soil& soil, WallParticles& walls, const CellList& s
 
 void RightHandSide::filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells,
                                    const CellList& wall_cells) const {
-  with_kernel<double>(k_.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
-    const Kernel kernel(1.0 / k_.h);
-    std::vector<double> filtered(soil.n_active);
+  std::vector<double> filtered(soil.n_active);
 #pragma omp parallel for schedule(static, grain)
-    for (std::size_t i = 0; i < soil.n_active; ++i)
-      filtered[i] = filtered_density(kernel, k_, soil, i, walls, soil_cells, wall_cells);
-    std::copy(filtered.begin(), filtered.end(), soil.rho.begin());
-  });
+  for (std::size_t i = 0; i < soil.n_active; ++i)
+    filtered[i] = filtered_density(k_, soil, i, walls, soil_cells, wall_cells);
+  std::copy(filtered.begin(), filtered.end(), soil.rho.begin());
 }
 
 }  // namespace talus

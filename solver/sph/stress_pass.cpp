@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sph/density_filter-inl.hpp"
+#include "sph/density_diffusion-inl.hpp"
 #include "sph/kernel-inl.hpp"
 #include "sph/pairs-inl.hpp"
 #include "sph/point_update-inl.hpp"

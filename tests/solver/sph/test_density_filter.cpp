@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "random_soil.hpp"
-#include "sph/density_filter-inl.hpp"
+#include "sph/density_diffusion-inl.hpp"
 
 namespace talus {
 namespace {

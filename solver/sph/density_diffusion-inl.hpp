@@ -1,11 +1,10 @@
-// "Regularized correction of density" ([Z20] 2.1): the Shepard filter, or the diffusion of delta-SPH. For every number
-// type; included once for every instruction set.
+// Diffusion of density (delta-SPH), for every number type. Included once for every instruction set.
 
-#if defined(TALUS_SPH_DENSITY_FILTER_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef TALUS_SPH_DENSITY_FILTER_INL
-#undef TALUS_SPH_DENSITY_FILTER_INL
+#if defined(TALUS_SPH_DENSITY_DIFFUSION_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TALUS_SPH_DENSITY_DIFFUSION_INL
+#undef TALUS_SPH_DENSITY_DIFFUSION_INL
 #else
-#define TALUS_SPH_DENSITY_FILTER_INL
+#define TALUS_SPH_DENSITY_DIFFUSION_INL
 #endif
 
 #include <hwy/highway.h>
@@ -30,18 +29,6 @@ template <class Real>
 HWY_INLINE Real add_diffusion(Real sum, Real minus_VF, Real q_ji) {
   return fma(minus_VF, q_ji, sum);
 }
-
-/// Shepard filter: rho_i/rho0_i <- sum_j V_j q_j W_ij / sum_j V_j W_ij with q = rho/rho0, itself included.
-/// For one material this is sum m_j W_ij / sum V_j W_ij.
-template <class Real>
-struct ShepardSum {
-  Real weighted, weight;
-  HWY_INLINE void add(Real V_j, Real q_j, Real W) {
-    weighted = weighted + V_j * q_j * W;
-    weight = weight + V_j * W;
-  }
-  HWY_INLINE Real value() const { return weighted / weight; }
-};
 
 }  // namespace talus::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
