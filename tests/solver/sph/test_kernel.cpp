@@ -7,23 +7,23 @@ namespace {
 
 using namespace HWY_NAMESPACE;
 
-constexpr double h = 0.37;
+constexpr double smoothing_length = 0.37;
 
 /// A kernel with its normalisation.
 template <class Kernel>
 class KernelTest : public testing::Test {
  protected:
-  const Kernel kernel{1.0 / h};
-  const double sigma = sigma_h2<Kernel>(h) * h * h;
+  const Kernel kernel{1.0 / smoothing_length};
+  const double sigma = sigma_h2<Kernel>(smoothing_length) * smoothing_length * smoothing_length;
   double W(double r) const { return sigma * kernel.W(r); }
-  double F(double r) const { return -sigma / (h * h) * kernel.minus_F(r, r * r); }
+  double F(double r) const { return -sigma / (smoothing_length * smoothing_length) * kernel.minus_F(r, r * r); }
 };
 using Kernels = testing::Types<CubicSpline<double>, WendlandC2<double>>;
 TYPED_TEST_SUITE(KernelTest, Kernels);
 
 TYPED_TEST(KernelTest, IntegratesToOneOverThePlane) {
   const int n = 20000;
-  const double dr = 2 * h / n;
+  const double dr = 2 * smoothing_length / n;
   double integral = 0.0;
   for (int k = 0; k < n; ++k) {
     const double r = (k + 0.5) * dr;
@@ -41,10 +41,10 @@ TYPED_TEST(KernelTest, FIsTheDerivativeOverR) {
 }
 
 TYPED_TEST(KernelTest, VanishesOutsideTheSupport) {
-  EXPECT_EQ(this->W(1.0001 * 2 * h), 0.0);
-  EXPECT_EQ(this->F(1.0001 * 2 * h), 0.0);
-  EXPECT_GT(this->W(0.99 * 2 * h), 0.0);
-  EXPECT_LT(this->F(0.99 * 2 * h), 0.0);
+  EXPECT_EQ(this->W(1.0001 * 2 * smoothing_length), 0.0);
+  EXPECT_EQ(this->F(1.0001 * 2 * smoothing_length), 0.0);
+  EXPECT_GT(this->W(0.99 * 2 * smoothing_length), 0.0);
+  EXPECT_LT(this->F(0.99 * 2 * smoothing_length), 0.0);
 }
 
 TYPED_TEST(KernelTest, IsFiniteAtTheOrigin) {
