@@ -7,6 +7,7 @@
 #include "jobs/inputs.hpp"
 
 using namespace talus::service;
+using talus::Json;
 
 namespace {
 
