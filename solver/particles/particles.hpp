@@ -83,6 +83,7 @@ struct WallParticles {
   std::size_t size() const { return x.size(); }
   Vec2 position(std::size_t j) const { return {x[j], y[j]}; }
   Vec2 normal(std::size_t j) const { return {nx[j], ny[j]}; }
+  Sym2 stress(std::size_t j) const { return {sxx[j], syy[j], sxy[j]}; }
 };
 
 /// The arrays of the walls that evaluations write.
