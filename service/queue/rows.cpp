@@ -1,5 +1,7 @@
 #include "queue/rows.hpp"
 
+#include <limits>
+
 namespace talus::service {
 namespace {
 
@@ -55,7 +57,11 @@ Run run_of(SQLite::Statement& row) {
   run.crashes = row.getColumn(i++).getInt64();
   if (run.state == RunState::done) {
     Record result{.index = run.key.index, .done = true};
-    for (const Measure& measure : measure_table) result.measures.*measure.member = row.getColumn(i++).getDouble();
+    for (const Measure& measure : measure_table) {
+      const SQLite::Column value = row.getColumn(i++);
+      // A run from before the measure existed has no value of it.
+      result.measures.*measure.member = value.isNull() ? std::numeric_limits<double>::quiet_NaN() : value.getDouble();
+    }
     result.mean_phi_deg = row.getColumn(i++).getDouble();
     result.captured_variance = row.getColumn(i++).getDouble();
     result.steps = row.getColumn(i++).getInt64();

@@ -46,7 +46,9 @@ MeasureSample Store::measure_sample(const Job& job, const Measure& measure,
     const std::string key = measure.key;
     MeasureSample sample;
     // The index holds the measures of all runs that are done, in order, and nothing else: a narrow scan.
-    const std::string done = "SELECT " + key + " FROM runs INDEXED BY runs_measures WHERE job = ? AND state = 'done'";
+    const std::string done = "SELECT " + key +
+                             " FROM runs INDEXED BY runs_measures WHERE job = ? AND state = 'done' AND " + key +
+                             " IS NOT NULL";
     sample.noise = column(db, done + " AND floor = 1 ORDER BY idx", job.number);
     if (job.floor_made > 0) {
       const std::vector<double> origin = column(db, done + " AND floor = 0 AND idx = 0", job.number);
@@ -66,10 +68,10 @@ MeasureSample Store::measure_sample(const Job& job, const Measure& measure,
     while (!rule.size() && query.executeStep()) {
       const bool good = query.getColumn(1).getInt() != 0;
       rule.add(query.getColumn(0).getInt64(), good ? std::optional(query.getColumn(2).getDouble()) : std::nullopt);
-      if (good)
-        sample.values.push_back(query.getColumn(3).getDouble());
-      else
+      if (!good)
         ++sample.failed;
+      else if (!query.getColumn(3).isNull())
+        sample.values.push_back(query.getColumn(3).getDouble());
     }
     sample.complete = sample.complete || rule.size();
     return sample;

@@ -43,8 +43,9 @@ Tables tables_from_runs(const fs::path& directory) {
 /// How one quantity is distributed, in the bins asked for.
 Json distribution(const Json& study, const Tables& tables, const StatsOptions& options) {
   const Measure& measure = *find_measure(options.quantity);
-  MeasureSample sample{.failed = study.at("realizations").at("failed"),
-                       .complete = study.at("realizations").at("complete")};
+  MeasureSample sample;
+  sample.failed = study.at("realizations").at("failed");
+  sample.complete = study.at("realizations").at("complete");
   const auto add = [&](std::vector<double>& values, const Record& r) {
     if (r.done) values.push_back(r.measures.*measure.member);
   };

@@ -166,9 +166,9 @@ Json parse_json(std::string_view text, const std::string& source, const JsonLimi
 
 Json read_json(const std::filesystem::path& path, std::size_t max_bytes) {
   try {
-    return parse_json(read_file(path, max_bytes), path.string(), own_file(max_bytes));
+    return parse_json(read_file(path, max_bytes), path.filename().string(), own_file(max_bytes));
   } catch (const ConfigError& e) {
-    throw IoError(std::string("cannot read JSON: ") + e.what());
+    throw IoError(path.string() + " is not JSON that can be read: " + e.what());
   }
 }
 
