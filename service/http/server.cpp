@@ -51,8 +51,14 @@ class RequestStream : public httplib::Stream {
     begun_ = true;
     return good ? static_cast<ssize_t>(size) : -1;
   }
-  void get_remote_ip_and_port(std::string& ip, int& port) const { ip.clear(), port = 0; }
-  void get_local_ip_and_port(std::string& ip, int& port) const { ip.clear(), port = 0; }
+  void get_remote_ip_and_port(std::string& ip, int& port) const {
+    ip.clear();
+    port = 0;
+  }
+  void get_local_ip_and_port(std::string& ip, int& port) const {
+    ip.clear();
+    port = 0;
+  }
   socket_t socket() const { return connection_.socket(); }
 
  private:
@@ -136,8 +142,12 @@ class Server::Implementation : public httplib::Server {
       fill(response, handle_(incoming(request)), request.version != "HTTP/1.0");
     };
     const std::string any = R"([\s\S]*)";
-    Get(any, answer), Post(any, answer), Put(any, answer), Patch(any, answer), Delete(any, answer),
-        Options(any, answer);
+    Get(any, answer);
+    Post(any, answer);
+    Put(any, answer);
+    Patch(any, answer);
+    Delete(any, answer);
+    Options(any, answer);
     // Methods that the library parses but does not dispatch: TRACE, CONNECT.
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       if (request.method != "TRACE" && request.method != "CONNECT" && request.method != "PRI")

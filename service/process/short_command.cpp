@@ -32,7 +32,10 @@ CommandOutput run_to_end(const executor::Command& command, const fs::path& scrat
   const fs::path out = stem.string() + ".out", err = stem.string() + ".err";
   struct Remover {
     const fs::path &a, &b;
-    ~Remover() { ::unlink(a.c_str()), ::unlink(b.c_str()); }
+    ~Remover() {
+      ::unlink(a.c_str());
+      ::unlink(b.c_str());
+    }
   } const remover{out, err};
 
   CommandOutput outcome;

@@ -35,11 +35,13 @@ HWY_INLINE Wide load(const double* HWY_RESTRICT from, std::size_t count) {
 HWY_INLINE void store(Wide v, double* HWY_RESTRICT to, std::size_t count) {
   const Doubles dd;
   if (count == lanes) {
-    hn::StoreU(v.lo, dd, to), hn::StoreU(v.hi, dd, to + lanes / 2);
+    hn::StoreU(v.lo, dd, to);
+    hn::StoreU(v.hi, dd, to + lanes / 2);
     return;
   }
   HWY_ALIGN double buffer[lanes];
-  hn::Store(v.lo, dd, buffer), hn::Store(v.hi, dd, buffer + lanes / 2);
+  hn::Store(v.lo, dd, buffer);
+  hn::Store(v.hi, dd, buffer + lanes / 2);
   for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
 }
 HWY_INLINE Wide wide(Lanes a) {
@@ -93,9 +95,10 @@ struct Packer {
     HWY_ALIGN float material[lanes] = {};
     std::fill_n(rho0, lanes, k.soils[0].eos.rho0);
     if (k.soils.size() > 1)
-      for (std::size_t l = 0; l < count; ++l)
-        material[l] = static_cast<float>(soil.material[i + l]),
+      for (std::size_t l = 0; l < count; ++l) {
+        material[l] = static_cast<float>(soil.material[i + l]);
         rho0[l] = k.soils[static_cast<std::size_t>(soil.material[i + l])].eos.rho0;
+      }
     const Wide q = s.rho / load(rho0, lanes) - each(1.0);
     const Vector<Wide> x{s.x - each(f.fixed.lo.x), s.y - each(f.fixed.lo.y)};
     store_groups(fixed_point(s.x, f.fixed.lo.x, per_quantum), fixed_point(s.y, f.fixed.lo.y, per_quantum), narrow(s.vx),
@@ -143,14 +146,18 @@ HWY_ATTR StepExtrema move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil&
                                HWY_ATTR { return move(array, wide(load(rate.data() + i))); };
     StateV s;
     const Wide old_vx = state(soil.vx), old_vy = state(soil.vy);
-    s.vx = move(soil.vx, wide(ax)), s.vy = move(soil.vy, wide(ay));
+    s.vx = move(soil.vx, wide(ax));
+    s.vy = move(soil.vy, wide(ay));
     s.rho = move_with(soil.rho, f.soil.drho);
-    move_with(soil.txx, f.soil.dtxx), move_with(soil.tyy, f.soil.dtyy), move_with(soil.txy, f.soil.dtxy);
+    move_with(soil.txx, f.soil.dtxx);
+    move_with(soil.tyy, f.soil.dtyy);
+    move_with(soil.txy, f.soil.dtxy);
     Wide vx = half * (old_vx + s.vx), vy = half * (old_vy + s.vy);
     if (midpoint_velocity) {
       Lanes x, y, middle_vx, middle_vy;
       load_groups(f.soil.motion.data() + 4 * i, count, x, y, middle_vx, middle_vy);
-      vx = wide(middle_vx), vy = wide(middle_vy);
+      vx = wide(middle_vx);
+      vy = wide(middle_vy);
     }
     s.x = move(soil.x, vx), s.y = move(soil.y, vy);
     packer.pack(f, k, soil, s, i, count);
@@ -177,8 +184,11 @@ HWY_ATTR StepExtrema move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil&
     }
     displacement2 = max(displacement2, displacement2_i);
     acceleration2 = max(acceleration2, acceleration2_i);
-    speed2 = max(speed2, speed2_i), moved2 = max(moved2, moved2_i), min_density = min(min_density, s.rho);
-    leftmost = min(leftmost, s.x), rightmost = max(rightmost, s.x);
+    speed2 = max(speed2, speed2_i);
+    moved2 = max(moved2, moved2_i);
+    min_density = min(min_density, s.rho);
+    leftmost = min(leftmost, s.x);
+    rightmost = max(rightmost, s.x);
     nonfinite = nonfinite + zero * (speed2_i + moved2_i + s.rho);  // stays zero unless something is not finite
   }
   const auto root = [&](Lanes squares)
@@ -217,9 +227,10 @@ void pack_walls(PackedFlow& f, const WallParticles& walls) {
         static_cast<std::int32_t>(std::clamp((x - lo) / f.fixed.quantum, 0.0, double{1 << 30})));
   };
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    f.walls.place[4 * w] = fixed(walls.x[w], f.fixed.lo.x), f.walls.place[4 * w + 1] = fixed(walls.y[w], f.fixed.lo.y);
-    f.walls.place[4 * w + 2] = static_cast<float>(walls.nx[w]),
-                          f.walls.place[4 * w + 3] = static_cast<float>(walls.ny[w]);
+    f.walls.place[4 * w] = fixed(walls.x[w], f.fixed.lo.x);
+    f.walls.place[4 * w + 1] = fixed(walls.y[w], f.fixed.lo.y);
+    f.walls.place[4 * w + 2] = static_cast<float>(walls.nx[w]);
+    f.walls.place[4 * w + 3] = static_cast<float>(walls.ny[w]);
     f.walls.stress[4 * w + 3] = static_cast<float>(walls.depth[w]);
   }
 }

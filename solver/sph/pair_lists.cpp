@@ -24,8 +24,10 @@ HWY_INLINE BoxI box_of(const float* groups, std::size_t count) {
   const auto at = [&](std::size_t n) { return std::bit_cast<std::int32_t>(groups[n]); };
   BoxI box{at(0), at(0), at(1), at(1)};
   for (std::size_t l = 1; l < count; ++l) {
-    box.x_lo = std::min(box.x_lo, at(4 * l)), box.x_hi = std::max(box.x_hi, at(4 * l));
-    box.y_lo = std::min(box.y_lo, at(4 * l + 1)), box.y_hi = std::max(box.y_hi, at(4 * l + 1));
+    box.x_lo = std::min(box.x_lo, at(4 * l));
+    box.x_hi = std::max(box.x_hi, at(4 * l));
+    box.y_lo = std::min(box.y_lo, at(4 * l + 1));
+    box.y_hi = std::max(box.y_hi, at(4 * l + 1));
   }
   return box;
 }

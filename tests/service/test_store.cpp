@@ -78,7 +78,8 @@ TEST_F(StoreTest, ClaimsAreSharedByTwoThreads) {
     }
   };
   std::thread a(work), b(work);
-  a.join(), b.join();
+  a.join();
+  b.join();
   EXPECT_EQ(seen.size(), 200u);
   EXPECT_EQ(std::set(seen.begin(), seen.end()).size(), 200u);
   EXPECT_EQ(job("one").done, 200);
@@ -158,7 +159,8 @@ TEST_F(StoreTest, OneHugeJobDoesNotStarveASmallOne) {
 }
 
 TEST_F(StoreTest, EqualJobsTakeTurns) {
-  add("a", 100), add("b", 100);
+  add("a", 100);
+  add("b", 100);
   std::string order;
   for (int i = 0; i < 6; ++i) {
     const Claim claim = *store->claim();
@@ -335,7 +337,10 @@ TEST_F(StoreTest, JobsAreListedNewestFirstByPages) {
 }
 
 TEST_F(StoreTest, JobsAreListedByTheTimeOfTheirCreation) {
-  for (const char* id : {"1", "2", "3"}) add(id, 1), now += 1000;
+  for (const char* id : {"1", "2", "3"}) {
+    add(id, 1);
+    now += 1000;
+  }
   const auto found = [&](std::optional<Milliseconds> from, std::optional<Milliseconds> to) {
     std::string ids;
     for (const Job& j : store->jobs({.created_from = from, .created_to = to})) ids += j.id;

@@ -18,17 +18,24 @@ inline Soil random_soil(int nx, int ny, double dx, unsigned seed, int materials 
   Soil s;
   const auto n = static_cast<std::size_t>(nx * ny);
   for_each_real(s, [&](const char*, auto& a) { a.assign(n, 0.0); });
-  s.material.assign(n, 0), s.id.resize(n), s.n_active = n;
-  s.x_sorted.assign(n, 0.0f), s.y_sorted.assign(n, 0.0f);
+  s.material.assign(n, 0);
+  s.id.resize(n);
+  s.n_active = n;
+  s.x_sorted.assign(n, 0.0f);
+  s.y_sorted.assign(n, 0.0f);
   for (std::size_t i = 0; i < n; ++i) {
     const auto col = static_cast<double>(i % static_cast<std::size_t>(nx)),
                row = static_cast<double>(i / static_cast<std::size_t>(nx));
-    s.x[i] = (col + 0.25 * u(engine)) * dx, s.y[i] = (row + 0.25 * u(engine)) * dx;
-    s.vx[i] = 2.0 * u(engine), s.vy[i] = 2.0 * u(engine);
+    s.x[i] = (col + 0.25 * u(engine)) * dx;
+    s.y[i] = (row + 0.25 * u(engine)) * dx;
+    s.vx[i] = 2.0 * u(engine);
+    s.vy[i] = 2.0 * u(engine);
     s.rho[i] = 2000 * (1 + 0.02 * u(engine));
     s.m[i] = 2000 * dx * dx * (1 + 0.3 * u(engine));
     s.tan_phi[i] = 0.5 + 0.2 * u(engine);
-    s.txx[i] = 900 * u(engine), s.tyy[i] = 900 * u(engine), s.txy[i] = 900 * u(engine);
+    s.txx[i] = 900 * u(engine);
+    s.tyy[i] = 900 * u(engine);
+    s.txy[i] = 900 * u(engine);
     s.material[i] = static_cast<std::int32_t>(i % static_cast<std::size_t>(materials));
     s.id[i] = static_cast<std::int32_t>(i);
   }
@@ -41,7 +48,8 @@ inline CellList sorted(Soil& soil, double reach) {
   cells.build(soil.x, soil.y, reach);
   std::vector<double> scratch;
   for_each_real(soil, [&](const char*, auto& a) { permute(a, cells.order(), scratch); });
-  permute(soil.material, cells.order(), scratch), permute(soil.id, cells.order(), scratch);
+  permute(soil.material, cells.order(), scratch);
+  permute(soil.id, cells.order(), scratch);
   return cells;
 }
 
@@ -58,7 +66,10 @@ inline void evaluate(const FlowConstants& k, Soil& soil, WallParticles& walls, c
 inline FlowConstants constants(double dx, Vec2 g = {0.0, -9.81},
                                std::vector<Material> materials = {{"a", 2000, 0.5, 700, 30}}) {
   FlowConstants k;
-  k.h = 1.2 * dx, k.dx = dx, k.c_s = 50, k.g = g;
+  k.h = 1.2 * dx;
+  k.dx = dx;
+  k.c_s = 50;
+  k.g = g;
   k.numerics.precision =
       Precision::full;  // formulas are tested to the last digits; the vectorised loops have tests of their own
   k.soils = constitutive_parameters(materials, {}, k.c_s);
@@ -71,8 +82,11 @@ inline WallParticles flat_walls(int nx, double dx) {
   w.volume = dx * dx;
   for (int layer = 0; layer < 3; ++layer)
     for (int k = -5; k < nx + 5; ++k) {
-      w.x.push_back(k * dx), w.y.push_back(-(layer + 1) * dx);
-      w.nx.push_back(0), w.ny.push_back(1), w.depth.push_back((layer + 0.5) * dx);
+      w.x.push_back(k * dx);
+      w.y.push_back(-(layer + 1) * dx);
+      w.nx.push_back(0);
+      w.ny.push_back(1);
+      w.depth.push_back((layer + 0.5) * dx);
     }
   for_each_wall_real(w, [&](const char*, auto& a) { a.assign(w.x.size(), 0.0); });
   return w;

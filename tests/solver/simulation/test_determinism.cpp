@@ -25,7 +25,8 @@ std::string digest_after(const Model& m, int steps, int threads) {
 TEST(Determinism, OneTwoAndThreeThreadsGiveTheSameBits) {
   for (const auto filter : {DensityFilter::delta_sph, DensityFilter::shepard}) {
     Model m = collapse(0.05);
-    m.numerics.density_filter = filter, m.numerics.filter_interval = 7;
+    m.numerics.density_filter = filter;
+    m.numerics.filter_interval = 7;
     const std::string one = digest_after(m, 60, 1);
     EXPECT_EQ(digest_after(m, 60, 2), one);
     EXPECT_EQ(digest_after(m, 60, 3), one);
@@ -36,7 +37,9 @@ TEST(Determinism, ARestoredRunGoesOnWithTheSameBits) {
   for (const auto integrator : {Integrator::rk2, Integrator::leapfrog})
     for (const auto filter : {DensityFilter::delta_sph, DensityFilter::shepard}) {
       Model m = collapse(0.05);
-      m.numerics.integrator = integrator, m.numerics.density_filter = filter, m.numerics.filter_interval = 9;
+      m.numerics.integrator = integrator;
+      m.numerics.density_filter = filter;
+      m.numerics.filter_interval = 9;
       m.time.end = 0.4;
       Simulation whole(m, plan_particles(m));
       while (!whole.finished()) whole.step(m.time.end);
@@ -61,7 +64,10 @@ TEST(Determinism, ListsOfNeighboursAreRenewedBeforeTheyMissAny) {
   Simulation whole(m, plan_particles(m)), second(m, plan_particles(m));
   while (!whole.finished()) {
     second.restore(whole.state());
-    for (int k = 0; k < 4; ++k) whole.step(m.time.end), second.step(m.time.end);
+    for (int k = 0; k < 4; ++k) {
+      whole.step(m.time.end);
+      second.step(m.time.end);
+    }
     ASSERT_EQ(digest(second.soil()), digest(whole.soil())) << "after step " << whole.steps();
   }
 }

@@ -78,13 +78,15 @@ TEST(Simulation, WeakerParticlesRunFarther) {
   const ParticlePlan plan = plan_particles(m);
   Simulation strong(m, plan, {std::vector<double>(plan.soil.size(), 0.7)}),
       weak(m, plan, {std::vector<double>(plan.soil.size(), 0.2)});
-  run(strong, m.time.end), run(weak, m.time.end);
+  run(strong, m.time.end);
+  run(weak, m.time.end);
   EXPECT_GT(farthest(weak.soil()), farthest(strong.soil()) + 0.2);
 }
 
 TEST(Simulation, SnapshotTimesNeverShortenAStepAndTheEndIsMetExactly) {
   Model m = collapse(0.1);
-  m.time.fixed_step = 3e-4, m.time.end = 0.03;
+  m.time.fixed_step = 3e-4;
+  m.time.end = 0.03;
   Simulation simulation(m, plan_particles(m));
   run(simulation, m.time.end);
   EXPECT_EQ(simulation.steps(), 100);
@@ -103,7 +105,8 @@ TEST(Simulation, MaxStepBoundsTheCourantStep) {
 
 TEST(Simulation, DivergenceNamesStepTimeAndParticle) {
   Model m = collapse(0.1);
-  m.time.fixed_step = 0.05, m.time.end = 100.0;  // a hundred times too large
+  m.time.fixed_step = 0.05;
+  m.time.end = 100.0;  // a hundred times too large
   Simulation simulation(m, plan_particles(m));
   try {
     run(simulation, m.time.end);
@@ -139,7 +142,8 @@ TEST(Simulation, ABlockOnASmootherWallSlidesAtTheWallsFriction) {
     m.materials = {{"soil", 2000, 45 * degree, 3000, 0}};
     m.g = {9.81 * std::sin(30 * degree), -9.81 * std::cos(30 * degree)};
     m.dx = 0.1;
-    m.walls.slip = slip, m.walls.phi = phi_wall_deg * degree;
+    m.walls.slip = slip;
+    m.walls.phi = phi_wall_deg * degree;
     m.time.end = 0.8;
     m.numerics.initial_pressure = InitialPressure::hydrostatic;
     if (slip == WallSlip::friction) m.materials[0].c = 0;
@@ -165,8 +169,11 @@ TEST(Simulation, WholeRightHandSideIsOfSecondOrderInTime) {
     m.terrain.left_wall = false;
     m.g = {0, 0};
     m.materials = {{"soil", 2000, 0, 1e9, 0}};
-    m.numerics.alpha = 0, m.numerics.tension_cutoff = false, m.numerics.c_s = 20;
-    m.time.fixed_step = dt, m.time.end = 0.01;
+    m.numerics.alpha = 0;
+    m.numerics.tension_cutoff = false;
+    m.numerics.c_s = 20;
+    m.time.fixed_step = dt;
+    m.time.end = 0.01;
     Simulation simulation(m, plan_particles(m));
     const Soil& s = simulation.soil();
     CheckpointState state = simulation.state();

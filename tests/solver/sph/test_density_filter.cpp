@@ -25,14 +25,20 @@ TEST(DensityDiffusion, FlowsFromDenseToLight) { EXPECT_GT(add_diffusion(0.0, 0.0
 TEST(DensityDiffusion, ConservesMassForEqualVolumes) {
   FlowConstants k = constants(0.1);
   Soil soil = random_soil(12, 12, 0.1, 41);
-  for (std::size_t i = 0; i < soil.size(); ++i) soil.m[i] = soil.rho[i] * 0.01, soil.vx[i] = soil.vy[i] = 0;
+  for (std::size_t i = 0; i < soil.size(); ++i) {
+    soil.m[i] = soil.rho[i] * 0.01;
+    soil.vx[i] = soil.vy[i] = 0;
+  }
   WallParticles none;
   CellList no_cells;
   no_cells.build({}, {}, 1.0);
   const CellList cells = sorted(soil, 2 * k.h);
   evaluate(k, soil, none, cells, no_cells);
   double sum = 0, size = 0;
-  for (const double d : soil.drho) sum += d, size += std::abs(d);
+  for (const double d : soil.drho) {
+    sum += d;
+    size += std::abs(d);
+  }
   EXPECT_GT(size, 0.0);
   EXPECT_NEAR(sum, 0.0, 1e-12 * size);
 }
@@ -46,7 +52,10 @@ TEST(ShepardFilter, KeepsAUniformDensityAndSmoothsARandomOne) {
   const CellList cells = sorted(soil, 2 * k.h);
   const auto spread = [&] {  // standard deviation
     double sum = 0, sum2 = 0;
-    for (const double r : soil.rho) sum += r - 2000, sum2 += (r - 2000) * (r - 2000);
+    for (const double r : soil.rho) {
+      sum += r - 2000;
+      sum2 += (r - 2000) * (r - 2000);
+    }
     const auto n = static_cast<double>(soil.size());
     return std::sqrt(sum2 / n - sum * sum / (n * n));
   };

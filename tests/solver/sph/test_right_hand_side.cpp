@@ -51,7 +51,8 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     double vx = b * s.vx[i], vy = b * s.vy[i];
     if (k.walls.slip == WallSlip::free_slip) {
       const double v_n = s.vx[i] * w.nx[j] + s.vy[i] * w.ny[j];
-      vx = b * v_n * w.nx[j], vy = b * v_n * w.ny[j];
+      vx = b * v_n * w.nx[j];
+      vy = b * v_n * w.ny[j];
     }
     const bool approaches = vx * x + vy * y < 0;
     return WallPair{d_i, vx, vy, std::hypot(x, y) < 2 * k.h && (k.walls.contact == WallContact::always || approaches)};
@@ -63,8 +64,10 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       const double x = s.x[i] - s.x[j], y = s.y[i] - s.y[j], d = std::hypot(x, y);
       if (i == j) continue;
       const double gx = dW(d) * x / d, gy = dW(d) * y / d, V = s.m[j] / s.rho[j];
-      Lxx += V * (s.vx[j] - s.vx[i]) * gx, Lxy += V * (s.vx[j] - s.vx[i]) * gy;
-      Lyx += V * (s.vy[j] - s.vy[i]) * gx, Lyy += V * (s.vy[j] - s.vy[i]) * gy;
+      Lxx += V * (s.vx[j] - s.vx[i]) * gx;
+      Lxy += V * (s.vx[j] - s.vx[i]) * gy;
+      Lyx += V * (s.vy[j] - s.vy[i]) * gx;
+      Lyy += V * (s.vy[j] - s.vy[i]) * gy;
       mass_form += s.m[j] * ((s.vx[i] - s.vx[j]) * gx + (s.vy[i] - s.vy[j]) * gy);
       if (s.material[i] == s.material[j]) {
         const double hydrostatic = law.eos.rho0 * (k.g.x * -x + k.g.y * -y) / (k.c_s * k.c_s);
@@ -78,8 +81,10 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       if (!pair.acts) continue;
       wall_distance = std::min(wall_distance, pair.distance);
       const double gx = dW(d) * x / d, gy = dW(d) * y / d;
-      Lxx -= w.volume * pair.vx * gx, Lxy -= w.volume * pair.vx * gy;
-      Lyx -= w.volume * pair.vy * gx, Lyy -= w.volume * pair.vy * gy;
+      Lxx -= w.volume * pair.vx * gx;
+      Lxy -= w.volume * pair.vx * gy;
+      Lyx -= w.volume * pair.vy * gx;
+      Lyy -= w.volume * pair.vy * gy;
       mass_form += s.rho[i] * w.volume * (pair.vx * gx + pair.vy * gy);
     }
     r.drho[i] = k.numerics.continuity == Continuity::mass ? mass_form : -s.rho[i] * (Lxx + Lyy);
@@ -98,18 +103,25 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     r.p[i] = p;
     if (k.rheology.yield == Yield::regularized) {
       const double eta = law.eta + tau_y / std::max(r.gamma_dot[i], 1e-3);
-      r.sxx[i] = -p + 2 * eta * exx, r.syy[i] = -p + 2 * eta * eyy, r.sxy[i] = 2 * eta * exy;
+      r.sxx[i] = -p + 2 * eta * exx;
+      r.syy[i] = -p + 2 * eta * eyy;
+      r.sxy[i] = 2 * eta * exy;
     } else {
       double txx = s.txx[i], tyy = s.tyy[i], txy = s.txy[i];
       const double size = std::sqrt((txx * txx + tyy * tyy + (txx + tyy) * (txx + tyy) + 2 * txy * txy) / 2);
       const double limit = printed ? std::sqrt(3.0) * tau_y : tau_y;
-      if (size > limit) txx *= limit / size, tyy *= limit / size, txy *= limit / size;
+      if (size > limit) {
+        txx *= limit / size;
+        tyy *= limit / size;
+        txy *= limit / size;
+      }
       // Jaumann: omega t - t omega with omega_xy = (Lxy - Lyx)/2 = -omega_yx
       const double omega = (Lxy - Lyx) / 2;
       r.dtxx[i] = 2 * omega * txy + 2 * law.G * exx;
       r.dtyy[i] = -2 * omega * txy + 2 * law.G * eyy;
       r.dtxy[i] = omega * tyy - txx * omega + 2 * law.G * exy;
-      r.sxx[i] = -p + txx + 2 * law.eta * exx, r.syy[i] = -p + tyy + 2 * law.eta * eyy;
+      r.sxx[i] = -p + txx + 2 * law.eta * exx;
+      r.syy[i] = -p + tyy + 2 * law.eta * eyy;
       r.sxy[i] = txy + 2 * law.eta * exy;
     }
   }
@@ -118,9 +130,13 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     for (std::size_t j = 0; j < n; ++j) {
       const double x = w.x[q] - s.x[j], y = w.y[q] - s.y[j], weight = W(std::hypot(x, y));
       const double g_r = k.g.x * x + k.g.y * y, rho0 = k.soils[static_cast<std::size_t>(s.material[j])].eos.rho0;
-      sum += weight, p_soil += weight * r.p[j], p += weight * (r.p[j] + s.rho[j] * g_r);
+      sum += weight;
+      p_soil += weight * r.p[j];
+      p += weight * (r.p[j] + s.rho[j] * g_r);
       compression += weight * (s.rho[j] / rho0 + g_r / (k.c_s * k.c_s));
-      txx += weight * (r.sxx[j] + r.p[j]), tyy += weight * (r.syy[j] + r.p[j]), txy += weight * r.sxy[j];
+      txx += weight * (r.sxx[j] + r.p[j]);
+      tyy += weight * (r.syy[j] + r.p[j]);
+      txy += weight * r.sxy[j];
     }
     if (sum == 0) continue;
     r.wall_p[q] = k.numerics.tension_cutoff ? std::max(p / sum, 0.0) : p / sum;
@@ -132,13 +148,15 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       const double c = w.nx[q], z = w.ny[q];
       const double nn = c * c * sxx + z * z * syy + 2 * c * z * sxy, tt = z * z * sxx + c * c * syy - 2 * c * z * sxy;
       const double nt = -(-c * z * sxx + c * z * syy + (c * c - z * z) * sxy);
-      sxx = c * c * nn + z * z * tt - 2 * c * z * nt, syy = z * z * nn + c * c * tt + 2 * c * z * nt;
+      sxx = c * c * nn + z * z * tt - 2 * c * z * nt;
+      syy = z * z * nn + c * c * tt + 2 * c * z * nt;
       sxy = c * z * nn - c * z * tt + (c * c - z * z) * nt;
     }
     r.wall_sxx[q] = sxx, r.wall_syy[q] = syy, r.wall_sxy[q] = sxy;
   }
   for (std::size_t i = 0; i < n; ++i) {
-    r.ax[i] = k.g.x, r.ay[i] = k.g.y;
+    r.ax[i] = k.g.x;
+    r.ay[i] = k.g.y;
     const auto viscous = [&](double v_x, double v_y, double x, double y, double rho) {
       const double vr = v_x * x + v_y * y;
       if (vr >= 0) return 0.0;
@@ -182,7 +200,10 @@ void compare_with_oracle(const Option& option, Precision precision, double toler
   option.set(k);
   Soil soil = random_soil(14, 9, dx, 11, 2);
   WallParticles walls = flat_walls(14, dx);
-  for (std::size_t w = 0; w < walls.size(); ++w) walls.nx[w] = -0.28, walls.ny[w] = 0.96;  // so that x and y differ
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    walls.nx[w] = -0.28;
+    walls.ny[w] = 0.96;  // so that x and y differ
+  }
   const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
   const Rates expected = brute_force(k, soil, walls);
   evaluate(k, soil, walls, soil_cells, wall_cells);
@@ -218,7 +239,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Option{"regularized", [](FlowConstants& k) { k.rheology.yield = Yield::regularized; }},
                     Option{"paper_norm",
                            [](FlowConstants& k) {
-                             k.rheology.yield = Yield::regularized, k.rheology.shear_rate = ShearRate::paper;
+                             k.rheology.yield = Yield::regularized;
+                             k.rheology.shear_rate = ShearRate::paper;
                            }},
                     Option{"paper_norm_elastic", [](FlowConstants& k) { k.rheology.shear_rate = ShearRate::paper; }},
                     Option{"wendland", [](FlowConstants& k) { k.numerics.kernel = KernelShape::wendland_c2; }},
@@ -226,19 +248,27 @@ INSTANTIATE_TEST_SUITE_P(
                     Option{"mass_form", [](FlowConstants& k) { k.numerics.continuity = Continuity::mass; }},
                     Option{"mass_form_of_touching_walls",
                            [](FlowConstants& k) {
-                             k.numerics.continuity = Continuity::mass, k.walls.contact = WallContact::approaching;
+                             k.numerics.continuity = Continuity::mass;
+                             k.walls.contact = WallContact::approaching;
                              k.numerics.density_filter = DensityFilter::shepard;
                            }},
-                    Option{"friction", [](FlowConstants& k) { k.walls.slip = WallSlip::friction, k.walls.phi = 0.1; }},
+                    Option{"friction",
+                           [](FlowConstants& k) {
+                             k.walls.slip = WallSlip::friction;
+                             k.walls.phi = 0.1;
+                           }},
                     Option{"friction_where_approaching",
                            [](FlowConstants& k) {
-                             k.walls.slip = WallSlip::friction, k.walls.phi = 0.1;
-                             k.walls.contact = WallContact::approaching, k.rheology.yield = Yield::regularized;
+                             k.walls.slip = WallSlip::friction;
+                             k.walls.phi = 0.1;
+                             k.walls.contact = WallContact::approaching;
+                             k.rheology.yield = Yield::regularized;
                            }},
                     Option{"free_slip", [](FlowConstants& k) { k.walls.slip = WallSlip::free_slip; }},
                     Option{"free_slip_where_approaching",
                            [](FlowConstants& k) {
-                             k.walls.slip = WallSlip::free_slip, k.walls.contact = WallContact::approaching;
+                             k.walls.slip = WallSlip::free_slip;
+                             k.walls.contact = WallContact::approaching;
                            }},
                     Option{"tension", [](FlowConstants& k) { k.numerics.tension_cutoff = false; }},
                     Option{"no_diffusion", [](FlowConstants& k) { k.numerics.density_filter = DensityFilter::none; }}),
@@ -265,8 +295,11 @@ TEST(RightHandSide, PairsConserveLinearMomentumExactly) {
   const Soil s = evaluated(random_soil(15, 12, 0.1, 5), k);
   Vec2 force;
   double mass = 0, size = 0;
-  for (std::size_t i = 0; i < s.size(); ++i)
-    force += s.m[i] * Vec2{s.ax[i], s.ay[i]}, mass += s.m[i], size += s.m[i] * std::hypot(s.ax[i], s.ay[i]);
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    force += s.m[i] * Vec2{s.ax[i], s.ay[i]};
+    mass += s.m[i];
+    size += s.m[i] * std::hypot(s.ax[i], s.ay[i]);
+  }
   EXPECT_NEAR(force.x, mass * 0.7, 1e-13 * size);
   EXPECT_NEAR(force.y, mass * -9.81, 1e-13 * size);
 }
@@ -276,8 +309,11 @@ TEST(RightHandSide, VectorisedPairsConserveLinearMomentumToRounding) {
   const Soil s = evaluated(random_soil(15, 12, 0.1, 5), k, Precision::single);
   Vec2 force;
   double mass = 0, size = 0;
-  for (std::size_t i = 0; i < s.size(); ++i)
-    force += s.m[i] * Vec2{s.ax[i], s.ay[i]}, mass += s.m[i], size += s.m[i] * std::hypot(s.ax[i], s.ay[i]);
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    force += s.m[i] * Vec2{s.ax[i], s.ay[i]};
+    mass += s.m[i];
+    size += s.m[i] * std::hypot(s.ax[i], s.ay[i]);
+  }
   EXPECT_NEAR(force.x, mass * 0.7, 1e-7 * size);
   EXPECT_NEAR(force.y, mass * -9.81, 1e-7 * size);
 }
@@ -299,15 +335,18 @@ TEST(RightHandSide, TurnsWithTheProblem) {
   const double a = 0.61, c = std::cos(a), s = std::sin(a);
   const auto turn = [&](double& x, double& y) {
     const double x0 = x;
-    x = c * x0 - s * y, y = s * x0 + c * y;
+    x = c * x0 - s * y;
+    y = s * x0 + c * y;
   };
   FlowConstants k = constants(0.1, {0.7, -9.81});
   const Soil original = random_soil(13, 11, 0.1, 23);
   Soil turned = original;
   for (std::size_t i = 0; i < turned.size(); ++i) {
-    turn(turned.x[i], turned.y[i]), turn(turned.vx[i], turned.vy[i]);
+    turn(turned.x[i], turned.y[i]);
+    turn(turned.vx[i], turned.vy[i]);
     const double xx = original.txx[i], yy = original.tyy[i], xy = original.txy[i];
-    turned.txx[i] = c * c * xx + s * s * yy - 2 * s * c * xy, turned.tyy[i] = s * s * xx + c * c * yy + 2 * s * c * xy;
+    turned.txx[i] = c * c * xx + s * s * yy - 2 * s * c * xy;
+    turned.tyy[i] = s * s * xx + c * c * yy + 2 * s * c * xy;
     turned.txy[i] = s * c * (xx - yy) + (c * c - s * s) * xy;
   }
   Soil before = evaluated(original, k);
@@ -325,8 +364,11 @@ TEST(RightHandSide, MirrorsWithTheProblem) {
   const FlowConstants k = constants(0.1);
   const Soil original = random_soil(13, 11, 0.1, 29);
   Soil mirrored_soil = original;
-  for (std::size_t i = 0; i < original.size(); ++i)
-    mirrored_soil.x[i] *= -1, mirrored_soil.vx[i] *= -1, mirrored_soil.txy[i] *= -1;
+  for (std::size_t i = 0; i < original.size(); ++i) {
+    mirrored_soil.x[i] *= -1;
+    mirrored_soil.vx[i] *= -1;
+    mirrored_soil.txy[i] *= -1;
+  }
   const Soil before = evaluated(original, k), after = evaluated(mirrored_soil, k);
   for (std::size_t i = 0; i < before.size(); ++i) {
     ASSERT_NEAR(after.ax[i], -before.ax[i], 1e-7);
@@ -338,9 +380,13 @@ TEST(RightHandSide, MirrorsWithTheProblem) {
 TEST(RightHandSide, UniformMotionFeelsNothingButGravity) {
   FlowConstants k = constants(0.1, {0.0, -9.81}, {{"a", 2000, 0.0, 0, 5}});
   Soil soil = random_soil(15, 15, 0.1, 31);
-  for (std::size_t i = 0; i < soil.size(); ++i)
-    soil.vx[i] = 3, soil.vy[i] = -2, soil.rho[i] = 2000, soil.tan_phi[i] = 0,
+  for (std::size_t i = 0; i < soil.size(); ++i) {
+    soil.vx[i] = 3;
+    soil.vy[i] = -2;
+    soil.rho[i] = 2000;
+    soil.tan_phi[i] = 0;
     soil.txx[i] = soil.tyy[i] = soil.txy[i] = 0;
+  }
   k.numerics.density_filter = DensityFilter::none;
   const Soil s = evaluated(soil, k);
   for (std::size_t i = 0; i < s.size(); ++i) {

@@ -60,13 +60,19 @@ TEST(Wall, DeviatorGrowsWithThePressureUpToThreefold) {
 Soil sliding(WallSlip slip, double phi_wall) {
   const double dx = 0.1;
   FlowConstants k = constants(dx, {0, 0}, {{"a", 2000, 0.5, 0, 0}});
-  k.walls.slip = slip, k.walls.phi = phi_wall;
+  k.walls.slip = slip;
+  k.walls.phi = phi_wall;
   k.rheology.yield = Yield::regularized;
-  k.numerics.density_filter = DensityFilter::none, k.numerics.alpha = 0;
+  k.numerics.density_filter = DensityFilter::none;
+  k.numerics.alpha = 0;
   Soil soil = random_soil(20, 8, dx, 3);
   for (std::size_t i = 0; i < soil.size(); ++i) {
-    soil.x[i] = static_cast<double>(i % 20) * dx, soil.y[i] = static_cast<double>(i / 20) * dx;
-    soil.vx[i] = 3, soil.vy[i] = 0, soil.m[i] = 2000 * dx * dx, soil.tan_phi[i] = 0.5;
+    soil.x[i] = static_cast<double>(i % 20) * dx;
+    soil.y[i] = static_cast<double>(i / 20) * dx;
+    soil.vx[i] = 3;
+    soil.vy[i] = 0;
+    soil.m[i] = 2000 * dx * dx;
+    soil.tan_phi[i] = 0.5;
     soil.rho[i] = k.soils[0].eos.density(1e4);
   }
   WallParticles walls = flat_walls(20, dx);
