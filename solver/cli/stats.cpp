@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "study/directory_store.hpp"
 #include "study/progress.hpp"
@@ -122,19 +123,23 @@ std::vector<std::string> quantity_names() {
 void add_stats(CLI::App& app, Action& action) {
   auto options = std::make_shared<StatsOptions>();
   CLI::App* verb = app.add_subcommand(
-      "stats", "study.json again from realizations.csv; several directories of one study are merged into --out");
-  verb->add_option("directories", options->directories, "directories of studies with the same case and seed")
+      "stats", "Recompute study.json from realizations.csv; several directories of one study are merged into --out");
+  verb->add_option("DIR", options->directories, "Directories of studies with the same case and seed")
+      ->type_name("DIR...")
       ->required();
-  verb->add_option("--out", options->out, "directory for the merged study");
-  verb->add_flag("--from-runs", options->from_runs, "write the tables from the results in runs/ first");
-  verb->add_option("--quantity", options->quantity, "only print how this one is distributed, as JSON")
+  verb->add_option("--out", options->out, "Directory for the merged study")->type_name("DIR");
+  verb->add_flag("--from-runs", options->from_runs, "First write the tables from the results in runs/");
+  verb->add_option("--quantity", options->quantity, "Only print the distribution of this measure, as JSON")
+      ->type_name("KEY")
       ->check(CLI::IsMember(quantity_names()));
-  auto* bins =
-      verb->add_option("--bins", options->bins, "with --quantity: so many equal bins")->check(CLI::Range(1, most_bins));
-  verb->add_option("--edges", options->edges, "with --quantity: edges of the bins, separated by commas")
+  auto* bins = verb->add_option("--bins", options->bins, "With --quantity: number of equal bins")
+                   ->check(CLI::Range(1, most_bins));
+  verb->add_option("--edges", options->edges, "With --quantity: edges of the bins, separated by commas")
       ->delimiter(',')
       ->excludes(bins);
-  verb->add_flag("--json", options->json, "print study.json on stdout");
+  verb->add_flag("--json", options->json, "Print study.json on stdout");
+  set_footer(*verb, {exit_text::bad_case, exit_text::io},
+             {"stats study --quantity front_mass_99_m --bins 20", "stats here there --out both"});
   verb->callback([options, &action] { action = [options] { return stats(*options); }; });
 }
 

@@ -14,6 +14,7 @@
 
 #include "case/load.hpp"
 #include "case/study_plan.hpp"
+#include "cli/help.hpp"
 #include "cli/signals.hpp"
 #include "cli/verbs.hpp"
 #include "cli/version.hpp"
@@ -195,33 +196,38 @@ Exit study(const StudyOptions& options) try {
 void add_study(CLI::App& app, Action& action) {
   auto options = std::make_shared<StudyOptions>();
   CLI::App* verb = app.add_subcommand(
-      "study", "Run many realizations: realizations.csv, study.json, figures; the same command goes on after a stop");
-  verb->add_option("case", options->case_file, "case file (JSON)")->required();
-  verb->add_option("--out", options->out, "directory for the results; created, empty, or holding this study")
+      "study", "Run many realizations: realizations.csv, study.json, figures; the same command continues after a stop");
+  add_case(*verb, options->case_file);
+  verb->add_option("--out", options->out, "Directory for the results; created, empty, or holding this study")
+      ->type_name("DIR")
       ->required();
-  verb->add_option("--realizations", options->realizations, "how many; otherwise the case's study.realizations")
+  verb->add_option("--realizations", options->realizations, "Number of realizations; default: study.realizations")
       ->check(CLI::Range(1, 1'000'000'000));
   verb->add_option("--seed", options->seed,
-                   "seed of the random fields; otherwise the case's, otherwise a new one, which is recorded")
+                   "Seed of the random fields; default: the case's, else a random one, which is recorded")
       ->check(CLI::Range(std::int64_t{0}, max_exact_integer));
-  verb->add_option("--workers", options->workers, "processes at a time; otherwise cores / threads")
+  verb->add_option("--workers", options->workers, "Processes at a time; default: cores / threads")
       ->check(CLI::Range(1, 4096));
-  verb->add_option("--threads", options->threads, "OpenMP threads of each process")->check(CLI::Range(1, 4096));
-  verb->add_option("--executor", options->executor, "where realizations run: local (here) or slurm (array jobs)")
+  verb->add_option("--threads", options->threads, "OpenMP threads of each process; default: 1")
+      ->check(CLI::Range(1, 4096));
+  verb->add_option("--executor", options->executor, "Where realizations run: local (here) or slurm (array jobs)")
+      ->type_name("NAME")
       ->check(CLI::IsMember({"local", "slurm"}));
-  verb->add_option("--slurm", options->slurm, "with --executor slurm: file that says how (deploy/slurm/slurm.json)");
-  verb->add_option("--set", options->overrides, "override a key of the case: path.to.key=value")
-      ->allow_extra_args(false);
-  verb->add_option(
-          "--range", options->range,
-          "run only realizations FIRST to LAST of the planned ones here, the others elsewhere; join with talus stats")
+  verb->add_option("--slurm", options->slurm, "With --executor slurm: its configuration (deploy/slurm/slurm.json)")
+      ->type_name("FILE");
+  add_overrides(*verb, options->overrides);
+  verb->add_option("--range", options->range,
+                   "Run only realizations FIRST to LAST here, the others elsewhere; merge with talus stats")
       ->expected(2)
       ->type_name("FIRST LAST")
       ->check(CLI::NonNegativeNumber);
-  verb->add_flag("--retry-failed", options->retry_failed, "run again the realizations that have failed");
-  verb->add_flag("--no-figures", options->no_figures, "draw none at the end");
-  verb->add_flag("--prepare", options->prepare, "only write plan and case, for others to run (talusd does)");
-  verb->add_flag("--json", options->json, "print study.json on stdout");
+  verb->add_flag("--retry-failed", options->retry_failed, "Run the failed realizations again");
+  verb->add_flag("--no-figures", options->no_figures, "Draw no figures at the end");
+  verb->add_flag("--prepare", options->prepare, "Only write plan and case, for others to run (talusd does)");
+  verb->add_flag("--json", options->json, "Print study.json on stdout");
+  set_footer(*verb, {exit_text::bad_case, exit_text::io, exit_text::stopped, exit_text::failed},
+             {"study slope.json --realizations 200 --out study",
+              "study slope.json --range 0 499 --seed 1 --realizations 1000 --out here"});
   verb->callback([options, &action] {
     if (options->executor == "slurm") options->out = fs::absolute(options->out);  // tasks begin in another directory
     action = [options] { return study(*options); };
