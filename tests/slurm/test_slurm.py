@@ -21,7 +21,7 @@ CASE = case(spacing=0.3, end=4.0)  # some two seconds a run
 OVER = ("successful", "failed")
 
 
-def digests(directory):
+def published(directory):
     """What a study says of itself, without what time it took."""
     study = json.loads((directory / "study.json").read_text())
     study["effort"].pop("wall_clock_s")
@@ -105,7 +105,7 @@ class StudyTest(SlurmTest):
             self.fail(f"the study does not end\n{self.output()}\n{self.squeue()}\n{self.cluster.logs()}")
 
     def same_as_local(self):
-        self.assertEqual(digests(self.dir / "study"), digests(self.plain / "study"))
+        self.assertEqual(published(self.dir / "study"), published(self.plain / "study"))
         self.assertFalse((self.dir / "study/work").exists())
 
 
@@ -260,7 +260,7 @@ class TimeLimit(StudyTest):
         self.assertGreater(len(tasks), 2, f"no task was broken off by the limit: {tasks}")
         local = subprocess.run([*command, "--out", self.dir / "local", "--workers", "2"], capture_output=True, text=True, timeout=900)
         self.assertEqual(local.returncode, 0, local.stderr)
-        self.assertEqual(digests(self.dir / "study"), digests(self.dir / "local"))
+        self.assertEqual(published(self.dir / "study"), published(self.dir / "local"))
 
     def end_after(self, seconds):
         """When the slide must end for a run to take about so long on this machine."""
@@ -295,7 +295,7 @@ class Service(SlurmTest):
         return info
 
     def same_as_local(self, job):
-        self.assertEqual(digests(self.dir / "data/jobs" / job), digests(self.plain / "study"))
+        self.assertEqual(published(self.dir / "data/jobs" / job), published(self.plain / "study"))
         histogram = self.daemon.get(f"/jobs/{job}/results").json["histogram"]["value"]["histogram"]
         local = json.loads((self.plain / "study/study.json").read_text())["quantities"]["influence_zone_m"]["histogram"]
         self.assertEqual(histogram["counts"], local["counts"])
