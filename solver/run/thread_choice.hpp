@@ -11,8 +11,8 @@ namespace talus {
 /// that wait for each other can be slower than one. The bits of a run do not depend on it. Not thread-safe.
 class ThreadChoice {
  public:
-  /// Two threads on two idle cores: 1.3 times as fast with 1,000 particles, 1.8 times with 2,000 and with 4,000. Cautious,
-  /// since on a busy machine threads that wait for one another lose more than that.
+  /// Two threads on two idle cores: 1.3 times as fast with 1,000 particles, 1.8 times with 2,000 and with 4,000.
+  /// Cautious, since on a busy machine threads that wait for one another lose more than that.
   static constexpr std::size_t particles_per_thread = 2000;
 
   /// @param particles  soil and walls
