@@ -52,7 +52,8 @@ void check_counts(const Model& model, Faults& faults) {
   double soil = 0.0;
   for (const SlidePart& part : model.slide) soil += area(part.outline);
   const double cells = soil / (model.dx * model.dx);
-  const double line = wall_line(model.terrain, model.dx, model.placement).length();
+  double line = 0.0;
+  for (const Polyline& wall : wall_lines(model.boundaries, model.dx, model.placement)) line += wall.length();
   const double estimate = cells + model.walls.layers * line / model.dx;
   if (cells < 1.0)
     faults.add("/particle_spacing_m", "leaves no particle: the slide's area, " + rounded(soil) +

@@ -6,6 +6,7 @@
 #include "case/checks.hpp"
 #include "case/overrides.hpp"
 #include "case/sections.hpp"
+#include "particles/geometry.hpp"
 #include "support/digest.hpp"
 
 namespace talus {
@@ -79,8 +80,10 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
             [&](ObjectReader& section) { read_rheology(section, m.rheology); });
   in.object("numerics", "How the equations are discretised.", Absent::defaults,
             [&](ObjectReader& section) { read_numerics(section, m.numerics); });
+  Boundary& bed = m.boundaries.emplace_back();
+  bed.line = ground_line(m.terrain);
   in.object("walls", "How the ground acts on the soil.", Absent::defaults,
-            [&](ObjectReader& section) { read_walls(section, m.walls); });
+            [&](ObjectReader& section) { read_walls(section, m.walls, bed); });
   in.object("time", "When to stop and what to keep.", Absent::fault,
             [&](ObjectReader& section) { read_time(section, m.time); });
   in.object("random_field",

@@ -25,7 +25,7 @@ struct MaterialInput : Material {
 void read_material(ObjectReader& in, MaterialInput& m);
 void read_rheology(ObjectReader& in, Rheology& r);
 void read_numerics(ObjectReader& in, Numerics& n);
-void read_walls(ObjectReader& in, Walls& w);
+void read_walls(ObjectReader& in, Walls& w, Boundary& bed);
 void read_time(ObjectReader& in, TimeControl& t);
 
 // read_geometry.cpp

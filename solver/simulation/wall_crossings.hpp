@@ -9,10 +9,10 @@
 
 namespace talus {
 
-/// Remembers, by id, which particles have ever been seen behind the wall.
+/// Remembers, by id, which particles have ever been seen behind a wall.
 class WallCrossings {
  public:
-  WallCrossings(Polyline wall, std::size_t particles) : wall_(std::move(wall)), seen_(particles, 0) {}
+  WallCrossings(std::vector<Polyline> walls, std::size_t particles) : walls_(std::move(walls)), seen_(particles, 0) {}
 
   /// Looks at the active soil, in parallel.
   void observe(const Soil& soil);
@@ -24,7 +24,7 @@ class WallCrossings {
   void restore(std::vector<std::uint8_t> seen) { seen_ = std::move(seen); }
 
  private:
-  Polyline wall_;
+  std::vector<Polyline> walls_;
   std::vector<std::uint8_t> seen_;
 };
 

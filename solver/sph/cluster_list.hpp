@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "neighbours/cell_list.hpp"
@@ -17,16 +18,19 @@ std::vector<std::uint32_t> clusters(const CellList& cells, std::size_t lanes);
 
 /// For each cluster the places of the particles to sum over, ascending.
 struct ClusterList {
-  static constexpr std::size_t chunk_size =
-      32;  ///< clusters whose lists a thread makes at a time, one after the other in memory
+  /// Clusters whose lists a thread makes at a time, one after the other in memory.
+  static constexpr std::size_t batch_size = 32;
   /// Each list is filled up to a multiple of it with a place where nothing is, and so many more stand behind the last.
   static constexpr std::size_t block = 2;
 
-  struct Chunk {
+  struct Batch {
     std::vector<std::uint32_t> places;
-    std::array<std::uint32_t, chunk_size + 1> at;  ///< where each cluster's part of `places` begins
+    std::array<std::uint32_t, batch_size + 1> at;  ///< where each cluster's part of `places` begins
   };
-  std::vector<Chunk> chunks;
+  std::vector<Batch> batches;
+
+  /// For the clusters of `first`, as clusters() returns them.
+  void resize(std::span<const std::uint32_t> first) { batches.resize((first.size() + batch_size - 2) / batch_size); }
 };
 
 }  // namespace talus

@@ -9,8 +9,6 @@
 
 #include <hwy/highway.h>
 
-#include <limits>
-
 #include "math/tensor-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -39,23 +37,21 @@ HWY_INLINE Real add_continuity(Real drho, Real rho_j, Vector<Real> VF_v_ij, Vect
 /// What the neighbours of a particle do to its density and deformation.
 template <class Real>
 struct FlowRates {
-  Gradient<Real> L;    ///< velocity gradient [1/s]
-  Real expansion;      ///< -(drho/dt)/rho without diffusion [1/s]
-  Real diffusion;      ///< rate of rho/rho0 by delta-SPH [1/s]
-  Real wall_distance;  ///< to the line of the nearest wall particle that acts [m]
+  Gradient<Real> L;  ///< velocity gradient [1/s]
+  Real expansion;    ///< -(drho/dt)/rho without diffusion [1/s]
+  Real diffusion;    ///< rate of rho/rho0 by delta-SPH [1/s]
 };
 
 /// Sums over the neighbours, with -F h^2/sigma for F.
 template <class Real>
 struct FlowRateSums {
   Gradient<Real> L;
-  Real drho;           ///< of the mass form, [Z20] Eq. 1
-  Real diffusion;      ///< of delta-SPH
-  Real wall_distance;  ///< to the line of the nearest wall particle that acts [m]
+  Real drho;       ///< of the mass form, [Z20] Eq. 1
+  Real diffusion;  ///< of delta-SPH
 
   static HWY_INLINE FlowRateSums zero() {
     const Real zero(0.0);
-    return {{zero, zero, zero, zero}, zero, zero, Real(std::numeric_limits<double>::infinity())};
+    return {{zero, zero, zero, zero}, zero, zero};
   }
 
   /// Adds one neighbour, soil or wall; `by_mass`: [Z20] Eq. 1 as printed, not the volume form.
@@ -70,7 +66,7 @@ struct FlowRateSums {
   HWY_INLINE FlowRates<Real> rates(Real to_L, Real to_diffusion, bool by_mass, Real rho) const {
     const Gradient<Real> scaled{to_L * L.xx, to_L * L.xy, to_L * L.yx, to_L * L.yy};
     const Real expansion = by_mass ? (Real(0.0) - to_L * drho) / rho : trace(scaled);
-    return {scaled, expansion, to_diffusion * diffusion, wall_distance};
+    return {scaled, expansion, to_diffusion * diffusion};
   }
 };
 

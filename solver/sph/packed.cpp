@@ -37,6 +37,8 @@ void PackedWalls::resize(std::size_t n) {
   if (place.size() == 4 * (n + padding)) return;
   resize_places(place, n);
   stress.assign(4 * (n + padding), 1.0f);  // a depth, that one can divide by
+  slip.assign(n + padding, 0.0f);
+  tan_phi.assign(n + padding, 0.0f);
 }
 
 }  // namespace talus

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "math/vec2.hpp"
+#include "particles/geometry_input.hpp"
 
 namespace talus {
 
-/// One contiguous run [begin, end).
-struct Chunk {
+/// Consecutive particles or clusters, [begin, end).
+struct Range {
   std::size_t begin, end;
 };
 
@@ -50,9 +51,14 @@ void for_each_packed_rate(P& s, F&& f) {
   f("dtxy", s.dtxy);
 }
 
+/// WallSlip as PackedWalls keeps it.
+constexpr float slip_code(WallSlip slip) { return static_cast<float>(slip); }
+
 struct PackedWalls {
-  std::vector<float> place;   ///< x, y [quantum, as integers], nx, ny [-]
-  std::vector<float> stress;  ///< sxx, syy, sxy [Pa], depth [m]
+  std::vector<float> place;    ///< x, y [quantum, as integers], nx, ny [-]
+  std::vector<float> stress;   ///< sxx, syy, sxy [Pa], depth [m]
+  std::vector<float> slip;     ///< WallSlip as a number, not grouped
+  std::vector<float> tan_phi;  ///< of the wall's friction angle, infinite where it has none [-], not grouped
   void resize(std::size_t n);
 };
 

@@ -58,9 +58,8 @@ TEST(VectorisedFlow, EqualsThePlainLoopsAtWallsOfEveryKind) {
     for (const auto contact : {WallContact::always, WallContact::approaching})
       for (const auto kernel : {KernelShape::cubic_spline, KernelShape::wendland_c2}) {
         FlowConstants k = constants(0.1, {1.3, -9.81}, {{"a", 2000, 0.5, 700, 30}, {"b", 1900, 0.5, 100, 90}});
-        k.walls.slip = slip;
+        k.boundaries = {{slip, slip == WallSlip::friction ? 0.1 : 1e9}};
         k.walls.contact = contact;
-        k.walls.phi = 0.1;
         k.numerics.kernel = kernel;
         Soil soil = random_soil(30, 8, k.dx, 47, 2);
         WallParticles walls = flat_walls(30, k.dx);
