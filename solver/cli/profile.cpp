@@ -33,7 +33,7 @@ ordered_json columns(const Frame& frame) {
     y.push_back(frame.position[i].y);
     moved.push_back(std::hypot(frame.displacement[i].x, frame.displacement[i].y));
     speed.push_back(std::hypot(frame.velocity[i].x, frame.velocity[i].y));
-    phi.push_back(degrees(std::atan(frame.tan_phi[i])));
+    phi.push_back(friction_angle_deg(frame.tan_phi[i]));
   }
   return {{"time_s", frame.time}, {"particles", frame.n_soil}, {"x_m", x}, {"y_m", y}, {"displacement_m", moved},
           {"speed_m_s", speed},   {"friction_angle_deg", phi}};

@@ -41,7 +41,7 @@ double colour_value(const Frame& frame, std::size_t i, Colour colour) {
     case Colour::speed:
       return norm(frame.velocity[i]);
     case Colour::friction_angle:
-      return degrees(std::atan(frame.tan_phi[i]));
+      return friction_angle_deg(frame.tan_phi[i]);
     case Colour::displacement:
       return norm(frame.displacement[i]);
     case Colour::pressure:
