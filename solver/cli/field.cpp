@@ -101,7 +101,7 @@ void draw(const FieldOnParticles& field, const Model& model, const figures::Stam
   frame.position = field.position;
   frame.tan_phi = field.tan_phi;
   const figures::Snapshot shot{&frame, figures::Colour::friction_angle, "Before the slide"};
-  figures::plot_sequence({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
+  figures::plot_profiles({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
 }
 
 void write(const FieldOnParticles& field, const Model& model, const figures::Stamps& stamps, const fs::path& path) {

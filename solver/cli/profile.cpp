@@ -53,9 +53,9 @@ Exit profile(const ProfileOptions& options) {
     const Provenance from = read_result(options.directory / "result.json").second;
     std::string source = "Talus " + from.version + "  ·  seed " + std::to_string(from.seed);
     if (from.realization) source += "  ·  realization " + std::to_string(*from.realization);
-    figures::plot_profile(frame, loaded.value.model.terrain, loaded.value.model.dx, figures::Colour::displacement,
-                          options.out,
-                          {from.case_title, "Displacement at the end", source + "  ·  case " + from.case_hash});
+    const figures::Snapshot shot{&frame, figures::Colour::displacement, {}};
+    figures::plot_profiles({&shot, 1}, loaded.value.model.terrain, loaded.value.model.dx, options.out,
+                           {from.case_title, "Displacement at the end", source + "  ·  case " + from.case_hash});
   }
   std::cout << options.out.string() << "\n";
   return Exit::ok;
