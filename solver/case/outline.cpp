@@ -43,14 +43,6 @@ bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
          (b_side == 0 && between(c, d, b));
 }
 
-/// Height of the bed at x, which lies within its extent.
-double bed_height(std::span<const Vec2> bed, double x) {
-  const auto right =
-      std::upper_bound(bed.begin() + 1, bed.end() - 1, x, [](double value, Vec2 v) { return value < v.x; });
-  const Vec2 a = *(right - 1), b = *right;
-  return a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x);
-}
-
 /// The region under (sign -1) or over (sign +1) a left-to-right surface, as far as `far`.
 Polygon half_plane(std::span<const Vec2> surface, double far) {
   std::vector<Vec2> ring(surface.begin(), surface.end());
@@ -123,6 +115,14 @@ std::vector<std::vector<Vec2>> between_surfaces(std::span<const Vec2> ground, st
   for (const Polygon& piece : pieces) outlines.push_back(normal_form(piece));
   std::sort(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) { return a[0].x < b[0].x; });
   return outlines;
+}
+
+double bed_height(std::span<const Vec2> bed, double x) {
+  x = std::clamp(x, bed.front().x, bed.back().x);
+  const auto right =
+      std::upper_bound(bed.begin() + 1, bed.end() - 1, x, [](double value, Vec2 v) { return value < v.x; });
+  const Vec2 a = *(right - 1), b = *right;
+  return a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x);
 }
 
 Intrusion depth_below_bed(std::span<const Vec2> outline, std::span<const Vec2> bed) {

@@ -28,6 +28,9 @@ double shared_area(std::span<const Vec2> a, std::span<const Vec2> b);
 /// { slip < y < ground }, counter-clockwise from its leftmost vertex. Both surfaces run left to right.
 std::vector<std::vector<Vec2>> between_surfaces(std::span<const Vec2> ground, std::span<const Vec2> slip);
 
+/// Height of an open bed at x, of its nearer end beyond it. [m]
+double bed_height(std::span<const Vec2> bed, double x);
+
 /// A point of the outline's edge that lies deepest on the wrong side of the ground, and how deep. [m]
 struct Intrusion {
   Vec2 at;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "figures/gnuplot.hpp"
 #include "support/error.hpp"
 #include "support/files.hpp"
 
@@ -36,18 +35,9 @@ std::string terminal(const Canvas& canvas, bool svg) {
          "\n";
 }
 
-// gnuplot's svg terminal takes "sans-serif:Bold" for the name of a family.
-void spell_bold_as_weight(std::string& svg) {
-  const std::string_view wrong = "font-family=\"sans-serif:Bold\"";
-  for (std::size_t at = 0; (at = svg.find(wrong, at)) != std::string::npos;) {
-    svg.replace(at, wrong.size(), "font-family=\"sans-serif\" font-weight=\"bold\"");
-  }
-}
-
 }  // namespace
 
-Script begin(const Canvas& canvas, const Stamps& stamps, double reserved) {
-  Script script;
+Sheet::Sheet(const Canvas& size, const Stamps& stamps, double reserved) : canvas(size) {
   script("set encoding utf8");
   script("set border 3 linewidth 0.8 linecolor rgb '", ink, "'");
   script("set tics nomirror out scale 0.6 textcolor rgb '", ink, "'");
@@ -57,33 +47,53 @@ Script begin(const Canvas& canvas, const Stamps& stamps, double reserved) {
     return shortened(words, static_cast<std::size_t>(std::max(1.0, room / px)));
   };
   const double room = canvas.width - 2 * margin;
-  text(script, canvas, margin, 26, fitted(stamps.title, room - reserved, px_bold), Align::left, 12, true);
-  text(script, canvas, margin, 50, fitted(stamps.subtitle, room, px_text), Align::left, 10, false, faint);
-  text(script, canvas, margin, canvas.height - 13, fitted(stamps.source, room, px_small), Align::left, 8, false, faint);
+  text(margin, 26, fitted(stamps.title, room - reserved, px_bold), {.points = 12, .bold = true});
+  text(margin, 50, fitted(stamps.subtitle, room, px_text), {.colour = faint});
+  text(margin, canvas.height - 13, fitted(stamps.source, room, px_small), {.points = 8, .colour = faint});
   script("set multiplot");
-  return script;
 }
 
-void place(Script& script, const Canvas& canvas, const Panel& panel) {
+void Sheet::axes(const Axis& x, const Axis& y) {
+  for (const auto& [name, axis] : {std::pair{"x", x}, std::pair{"y", y}}) {
+    script("set ", name, "range [", axis.lo, ":", axis.hi, "]");
+    if (axis.step > 0)
+      script("set ", name, "tics ", axis.step);
+    else
+      script("unset ", name, "tics");
+    script("set ", name, "label ", literal(axis.label));
+  }
+}
+
+void Sheet::place(const Panel& panel) {
   script("set lmargin at screen ", across(canvas, panel.left));
   script("set rmargin at screen ", across(canvas, panel.right));
   script("set tmargin at screen ", up(canvas, panel.top));
   script("set bmargin at screen ", up(canvas, panel.bottom));
 }
 
-void text(Script& script, const Canvas& canvas, double x, double y, std::string_view words, Align align, int points,
-          bool bold, const char* colour) {
+void Sheet::text(double x, double y, std::string_view words, const TextStyle& style) {
   if (words.empty()) return;
-  const char* where = align == Align::left ? "left" : align == Align::right ? "right" : "center";
+  const char* where = style.align == Align::left ? "left" : style.align == Align::right ? "right" : "center";
   script("set label ", literal(words), " at screen ", across(canvas, x), ", screen ", up(canvas, y), " ", where,
-         " front ", font(points, bold), " textcolor rgb '", colour, "'");
+         " front ", font(style.points, style.bold), " textcolor rgb '", style.colour, "'");
 }
 
-void colour_bar(Script& script, const Canvas& canvas, const Panel& bar, std::string_view name) {
+void Sheet::colour_bar(const Panel& bar, std::string_view name) {
   script("set colorbox horizontal user origin screen ", across(canvas, bar.left), ", screen ", up(canvas, bar.bottom),
          " size screen ", bar.width() / canvas.width, ", screen ", bar.height() / canvas.height, " noborder front");
   script("set cbtics nomirror out scale 0.4 offset 0,0.5 ", font(9, false));
-  text(script, canvas, bar.left - 10, 0.5 * (bar.top + bar.bottom), name, Align::right);
+  text(bar.left - 10, 0.5 * (bar.top + bar.bottom), name, {.align = Align::right});
+}
+
+void Sheet::save(const std::filesystem::path& path) const {
+  const bool svg = path.extension() == ".svg";
+  if (!svg && path.extension() != ".png") throw IoError(path.string() + ": a figure file must end in .svg or .png");
+  std::string picture = run_gnuplot(terminal(canvas, svg) + script.text()).picture;
+  // gnuplot's svg terminal takes "sans-serif:Bold" for the name of a family.
+  const std::string bold = "font-family=\"sans-serif:Bold\"";
+  for (std::size_t at = 0; svg && (at = picture.find(bold, at)) != std::string::npos;)
+    picture.replace(at, bold.size(), "font-family=\"sans-serif\" font-weight=\"bold\"");
+  write_file_atomically(path, picture);
 }
 
 double nice_step(double range, int parts) {
@@ -93,12 +103,8 @@ double nice_step(double range, int parts) {
   return decade * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
 }
 
-void save(const Script& script, const Canvas& canvas, const std::filesystem::path& path) {
-  const bool svg = path.extension() == ".svg";
-  if (!svg && path.extension() != ".png") throw IoError(path.string() + ": a figure file must end in .svg or .png");
-  std::string picture = run_gnuplot(terminal(canvas, svg) + script.text()).picture;
-  if (svg) spell_bold_as_weight(picture);
-  write_file_atomically(path, picture);
+double nice_step(double range, double length, double pitch) {
+  return nice_step(range, std::max(2, static_cast<int>(length / pitch)));
 }
 
 }  // namespace talus::figures

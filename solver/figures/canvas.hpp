@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "figures/palette.hpp"
+#include "figures/colour.hpp"
 #include "figures/script.hpp"
 
 namespace talus::figures {
@@ -30,33 +30,46 @@ struct Stamps {
   std::string source;    ///< small, lower left: case, version, seed, realization
 };
 
+/// An axis of a plot: what it shows and where its tics are.
+struct Axis {
+  double lo, hi;
+  double step;             ///< between tics; 0: no tics
+  std::string_view label;  ///< quantity with unit
+};
+
 enum class Align { left, centre, right };
+struct TextStyle {
+  Align align = Align::left;
+  int points = 10;
+  bool bold = false;
+  const char* colour = ink;
+};
 
-/// Starts a figure: style, stamps, multiplot. `reserved` px at the upper right stay free of the title.
-Script begin(const Canvas& canvas, const Stamps& stamps, double reserved = 0.0);
+/// A figure: its script and the canvas that it is drawn on.
+struct Sheet {
+  Canvas canvas;
+  Script script;
 
-/// Where the next plot goes: `set lmargin at screen` and so on.
-void place(Script& script, const Canvas& canvas, const Panel& panel);
+  /// Starts a figure: style, stamps, multiplot. `reserved` px at the upper right stay free of the title.
+  Sheet(const Canvas& canvas, const Stamps& stamps, double reserved = 0.0);
 
-/// Text at (x, y) px from the upper left corner, vertically centred there; it stays until `unset label`.
-void text(Script& script, const Canvas& canvas, double x, double y, std::string_view words, Align align = Align::left,
-          int points = 10, bool bold = false, const char* colour = ink);
+  /// The axes of the plots that follow.
+  void axes(const Axis& x, const Axis& y);
+  /// Where the next plot goes: `set lmargin at screen` and so on.
+  void place(const Panel& panel);
+  /// Text at (x, y) px from the upper left corner, vertically centred there; it stays until `unset label`.
+  void text(double x, double y, std::string_view words, const TextStyle& style = {});
+  /// Horizontal colour bar for the plots that follow, its name to the left of it.
+  void colour_bar(const Panel& bar, std::string_view name);
 
-/// Horizontal colour bar for the plots that follow, its name to the left of it.
-void colour_bar(Script& script, const Canvas& canvas, const Panel& bar, std::string_view name);
+  /// Draws the figure to a file ending in .svg or .png; written atomically.
+  /// @throws IoError when gnuplot is missing or fails, the file cannot be written, or has another ending
+  void save(const std::filesystem::path& path) const;
+};
 
 /// A step of 1, 2 or 5 times a power of ten that divides `range` into about `parts`.
 double nice_step(double range, int parts);
-
-/// Draws the figure to a file ending in .svg or .png; written atomically.
-/// @throws IoError when gnuplot is missing or fails, the file cannot be written, or has another ending
-void save(const Script& script, const Canvas& canvas, const std::filesystem::path& path);
-
-/// A figure ready to be saved.
-struct Sheet {
-  Script script;
-  Canvas canvas;
-  void save(const std::filesystem::path& path) const { figures::save(script, canvas, path); }
-};
+/// The same for an axis of `length` px with a tic about every `pitch` px, at least two.
+double nice_step(double range, double length, double pitch);
 
 }  // namespace talus::figures

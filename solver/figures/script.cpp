@@ -1,5 +1,10 @@
 #include "figures/script.hpp"
 
+#include <cmath>
+#include <cstdio>
+
+#include "figures/colour.hpp"
+
 namespace talus::figures {
 
 std::string number(double value) {
@@ -46,6 +51,30 @@ void Script::data_row(std::span<const double> row) {
     append(row[i]);
   }
   text_ += '\n';
+}
+
+Script& Script::plot(std::span<const std::string> elements, std::string_view bytes) {
+  text_ += "plot ";
+  for (const std::string& element : elements) text_ += element + ", \\\n  ";
+  text_ += "NaN\n";
+  text_ += bytes;
+  return *this;
+}
+
+std::string line(std::string_view data, const char* colour, double width, bool dashed) {
+  return "$" + std::string(data) + " using 1:2 with lines " + (dashed ? "dashtype 2 " : "") + "linewidth " +
+         number(width) + " linecolor rgb '" + colour + "'";
+}
+
+std::string band(std::string_view data, std::string_view columns, double opacity) {
+  return "$" + std::string(data) + " using " + std::string(columns) + " with filledcurves fillcolor rgb '" + blue +
+         "' fillstyle transparent solid " + number(opacity) + " noborder";
+}
+
+std::string boxes(std::string_view data, std::string_view columns, double opacity, const char* colour,
+                  std::string_view border) {
+  return "$" + std::string(data) + " using " + std::string(columns) + " with boxxyerror fillstyle solid " +
+         number(opacity) + " " + std::string(border) + " linecolor rgb '" + colour + "'";
 }
 
 }  // namespace talus::figures

@@ -1,12 +1,11 @@
 #pragma once
-// A gnuplot script under construction. Numbers go in as numbers, text only through literal(): nothing a user wrote is
-// ever interpreted.
+// A gnuplot script under construction, and the gnuplot that runs it. Numbers go in as numbers, text only through
+// literal(): nothing a user wrote is ever interpreted.
 
-#include <cmath>
-#include <cstdio>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "math/vec2.hpp"
 
@@ -43,11 +42,8 @@ class Script {
     return (*this)("END_OF_DATA");
   }
 
-  /// Bytes for a plot of '-', right after its command.
-  Script& inline_binary(std::string_view bytes) {
-    text_ += bytes;
-    return *this;
-  }
+  /// Plots the elements one over the other, in their order; `bytes` are the data of an element '-'.
+  Script& plot(std::span<const std::string> elements, std::string_view bytes = {});
 
   const std::string& text() const { return text_; }
 
@@ -60,5 +56,23 @@ class Script {
 
   std::string text_;
 };
+
+/// A plot element: columns x, y of a datablock as a line.
+std::string line(std::string_view data, const char* colour, double width = 2, bool dashed = false);
+/// A plot element: the area between columns lo and hi over x, as in "1:3:4", in transparent blue.
+std::string band(std::string_view data, std::string_view columns = "1:3:4", double opacity = 0.22);
+/// A plot element: boxes; `columns` are those of boxxyerror: x, y, x low, x high, y low, y high.
+std::string boxes(std::string_view data, std::string_view columns, double opacity, const char* colour,
+                  std::string_view border);
+
+/// What gnuplot made of a script.
+struct GnuplotOutput {
+  std::string picture;   ///< all it wrote to stdout
+  std::string warnings;  ///< all it wrote to stderr
+};
+
+/// Runs `gnuplot --default-settings` with `script` as its stdin: no shell, no start-up file.
+/// @throws IoError when gnuplot is missing ("install gnuplot-nox") or fails (with its message)
+GnuplotOutput run_gnuplot(const std::string& script);
 
 }  // namespace talus::figures

@@ -1,6 +1,7 @@
 #pragma once
 // Vectors of the plane.
 
+#include <algorithm>
 #include <cmath>
 
 namespace talus {
@@ -45,6 +46,11 @@ struct Box {
   Vec2 hi;
   constexpr double width() const { return hi.x - lo.x; }
   constexpr double height() const { return hi.y - lo.y; }
+  /// Grows the box until it holds p.
+  void include(Vec2 p) {
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
+  }
   constexpr bool operator==(const Box&) const = default;
 };
 

@@ -79,6 +79,14 @@ TEST(BetweenSurfaces, TakesCliffsAndShortSurfaces) {
   EXPECT_TRUE(between_surfaces(Points{{0, 0}, {1, 0}}, Points{{2, -1}, {3, -1}}).empty()) << "no common extent";
 }
 
+TEST(BedHeight, IsLinearBetweenVerticesAndConstantBeyondTheEnds) {
+  const Points bed = {{0, 10}, {10, 0}, {40, 0}};
+  EXPECT_DOUBLE_EQ(bed_height(bed, 2.5), 7.5);
+  EXPECT_DOUBLE_EQ(bed_height(bed, 30), 0);
+  EXPECT_DOUBLE_EQ(bed_height(bed, -3), 10);
+  EXPECT_DOUBLE_EQ(bed_height(bed, 99), 0);
+}
+
 /// Deepest point below the bed, by sampling the outline densely.
 double sampled_depth(const Points& outline, const Points& bed) {
   double worst = 0.0;

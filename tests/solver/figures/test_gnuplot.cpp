@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "figures/gnuplot.hpp"
+#include "figures/script.hpp"
 #include "reading.hpp"
 #include "support/error.hpp"
 #include "temporary_directory.hpp"

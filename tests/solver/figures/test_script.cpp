@@ -3,7 +3,6 @@
 #include <array>
 #include <limits>
 
-#include "figures/gnuplot.hpp"
 #include "figures/script.hpp"
 #include "reading.hpp"
 
