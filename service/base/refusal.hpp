@@ -1,12 +1,12 @@
 #pragma once
-// Why a request is not carried out: thrown anywhere, turned into an answer in one place (http/problem).
+// Why a request is rejected: thrown anywhere, turned into a response in one place (http/problem).
 
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "support/error.hpp"
+#include "support/faults.hpp"
 
 namespace talus::service {
 
@@ -38,12 +38,17 @@ enum class Reason {
 };
 
 struct Refusal : std::runtime_error {
-  Refusal(Reason why, const std::string& detail, std::vector<Fault> all = {})
-      : std::runtime_error(detail), reason(why), faults(std::move(all)) {}
+  Refusal(Reason why, const std::string& detail, std::vector<Fault> all = {}, std::optional<int> retry_after_s = {})
+      : std::runtime_error(detail), reason(why), faults(std::move(all)), retry_after(retry_after_s) {}
   Reason reason;
   std::vector<Fault> faults;
-  std::string allow;                    ///< of a method_not_allowed: the methods that are
-  std::optional<int> retry_after = {};  ///< [s]
+  std::optional<int> retry_after;  ///< [s]
+  std::string allow = {};          ///< of method_not_allowed: the allowed methods
 };
+
+/// @throws Refusal with all faults, if there are any
+inline void refuse_if_any(const Faults& faults, Reason reason, const std::string& detail) {
+  if (!faults.empty()) throw Refusal(reason, detail, faults.all());
+}
 
 }  // namespace talus::service

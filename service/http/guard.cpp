@@ -3,34 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstdint>
+
+#include "http/text.hpp"
 
 namespace talus::service {
 namespace {
 
-/// The headers passed on to handlers, and whether each may be repeated.
-constexpr std::array<std::string_view, 10> handed_on{
+/// The headers passed on to handlers.
+constexpr std::array<std::string_view, 10> passed_on{
     "host",   "accept",        "authorization",     "prefer",      "idempotency-key", "if-none-match",
     "origin", "last-event-id", "x-forwarded-proto", "x-request-id"};
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return out;
-}
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
 /// RFC 9110: the characters of methods and header names.
 bool is_token(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-           std::string_view("!#$%&'*+-.^_`|~").find(static_cast<char>(c)) != std::string_view::npos;
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return is_letter_or_digit(c) || std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string_view::npos;
   });
 }
 
@@ -77,7 +64,7 @@ bool is_loopback_name(std::string_view host) {
   return host == "localhost" || host == "127.0.0.1";
 }
 
-/// Why a host is not one that we answer to.
+/// The refusal of a host that talusd does not serve.
 std::optional<Head> judge_host(std::string_view host, const GuardLimits& limits) {
   if (host.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-:[]_") !=
       std::string_view::npos)
@@ -92,7 +79,7 @@ struct Line {
   std::string_view value;
 };
 
-/// The headers of a head, or why they are none.
+/// Reads the headers. @return the refusal of invalid ones
 std::optional<Head> split(std::string_view text, const GuardLimits& limits, std::vector<Line>& lines) {
   while (!text.empty()) {
     const std::size_t end = text.find("\r\n");
@@ -176,7 +163,7 @@ Head judge(std::string_view head, const GuardLimits& limits) {
     } else if (line.name == "content-type") {
       if (hides_control(line.value)) return refused(400, "a header value contains encoded control characters");
       good.rewritten += std::string(body_type_header) + ": " + std::string(line.value) + "\r\n";
-    } else if (std::find(handed_on.begin(), handed_on.end(), line.name) != handed_on.end()) {
+    } else if (std::find(passed_on.begin(), passed_on.end(), line.name) != passed_on.end()) {
       if (count(line.name) > 1 && line.name != "accept" && line.name != "prefer" && line.name != "if-none-match")
         return refused(400, line.name + " occurs more than once");
       if (hides_control(line.value)) return refused(400, "a header value contains encoded control characters");

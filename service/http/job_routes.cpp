@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
-#include "http/echo.hpp"
-#include "http/links.hpp"
 #include "http/lookup.hpp"
 #include "http/results.hpp"
+#include "http/text.hpp"
 
 namespace talus::service {
 namespace {
@@ -15,7 +14,7 @@ std::vector<std::string> values_of(const Incoming& request, const std::string& n
   std::vector<std::string> all;
   const auto [first, last] = request.query.equal_range(name);
   for (auto at = first; at != last; ++at)
-    for (std::string& value : comma_list(at->second)) all.push_back(std::move(value));
+    for (std::string& value : split(at->second, ',')) all.push_back(std::move(value));
   return all;
 }
 
@@ -40,8 +39,7 @@ JobFilter filter_of(const Exchange& exchange) {
   const Incoming& request = exchange.request;
   only_parameters(request, {"limit", "status", "processID", "type", "datetime", "minDuration", "maxDuration", "after"});
   JobFilter filter{.subject = exchange.subject};
-  filter.limit = static_cast<int>(whole_number(request, "limit", 1, 1'000'000).value_or(default_limit));
-  filter.limit = std::min(filter.limit, max_limit);
+  filter.limit = page_limit(request);
   filter.before = whole_number(request, "after", 0, std::int64_t{1} << 62);
   for (const std::string& name : values_of(request, "status")) {
     const auto state = job_state(name);
@@ -58,10 +56,10 @@ JobFilter filter_of(const Exchange& exchange) {
   return filter;
 }
 
-Answer list_jobs(Exchange& exchange, Service& service) {
+Answer list_jobs(Exchange& exchange) {
   JobFilter filter = filter_of(exchange);
   const auto limit = static_cast<std::size_t>(filter.limit++);  // one more, to see whether there is more
-  std::vector<Job> jobs = service.store.jobs(filter);
+  std::vector<Job> jobs = exchange.service.store.jobs(filter);
   const bool more = jobs.size() > limit;
   if (more) jobs.resize(limit);
   Json all = Json::array(),
@@ -74,8 +72,8 @@ Answer list_jobs(Exchange& exchange, Service& service) {
   return json_answer({{"jobs", all}, {"links", links}});
 }
 
-Answer results(Exchange& exchange, Service& service) {
-  const Job job = job_of(exchange, service);
+Answer results(Exchange& exchange) {
+  const Job job = job_of(exchange);
   if (job.state == JobState::dismissed) throw Refusal(Reason::job_dismissed, "the job was dismissed");
   if (job.state == JobState::failed) throw Refusal(Reason::unprocessable, "the job failed: " + job.message);
   if (job.state != JobState::successful) throw Refusal(Reason::result_not_ready, "the job is still running");
@@ -85,27 +83,26 @@ Answer results(Exchange& exchange, Service& service) {
   if (job.process == "echo") return results_answer(echo_results(asked.at("inputs"), outputs), raw, exchange.request);
   Json values = Json::object();
   for (const std::string& output : outputs) {
-    if (output == "summary") values[output] = service.jobs.summary(job);
+    if (output == "summary") values[output] = exchange.service.jobs.summary(job);
     if (output == "histogram")
-      values[output] = service.jobs.distribution(job, quantity_of(asked.at("quantity"), ""), {});
+      values[output] = exchange.service.jobs.distribution(job, quantity_of(asked.at("quantity"), ""), {});
   }
   return results_answer(values, raw, exchange.request);
 }
 
-Answer dismiss(Exchange& exchange, Service& service) {
-  const Job job = job_of(exchange, service);
-  service.jobs.dismiss(job);
-  return json_answer(status_info(*service.store.job(job.id), exchange));
+Answer dismiss(Exchange& exchange) {
+  const Job job = job_of(exchange);
+  exchange.service.jobs.dismiss(job);
+  return json_answer(status_info(*exchange.service.store.job(job.id), exchange));
 }
 
 }  // namespace
 
-void add_job_routes(Router& router, Service& service) {
-  router.add("GET", "/jobs", Role::read, [&service](Exchange& e) { return list_jobs(e, service); });
-  router.add("GET", "/jobs/{}", Role::read,
-             [&service](Exchange& e) { return json_answer(status_info(job_of(e, service), e)); });
-  router.add("DELETE", "/jobs/{}", Role::submit, [&service](Exchange& e) { return dismiss(e, service); });
-  router.add("GET", "/jobs/{}/results", Role::read, [&service](Exchange& e) { return results(e, service); });
+Routes job_routes() {
+  return {{"GET", "/jobs", Role::read, list_jobs},
+          {"GET", "/jobs/{}", Role::read, [](Exchange& e) { return json_answer(status_info(job_of(e), e)); }},
+          {"DELETE", "/jobs/{}", Role::submit, dismiss},
+          {"GET", "/jobs/{}/results", Role::read, results}};
 }
 
 }  // namespace talus::service

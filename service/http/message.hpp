@@ -42,9 +42,12 @@ struct Answer {
   std::function<void(const Sink&)> stream = {};  ///< instead of a body
 };
 
-/// A request being handled: caller and captured parts of the path.
+struct Service;
+
+/// A request being handled, its sender, and the captured parts of the path.
 struct Exchange {
-  const Incoming& request;
+  Service& service;
+  Incoming request;
   std::vector<std::string> captured = {};  ///< path segments that match the {} of the route
   std::string subject = "local";
   Role role = Role::submit;

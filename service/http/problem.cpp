@@ -1,15 +1,17 @@
 #include "http/problem.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 
-#include "base/log.hpp"
+#include "base/json.hpp"
 #include "queue/database.hpp"
 #include "support/files.hpp"
 
 namespace talus::service {
 namespace {
 
+/// The response to a refusal.
 struct Row {
   Reason reason;
   int status;
@@ -46,19 +48,24 @@ constexpr Row table[] = {
     {Reason::disk_full, 507, "urn:talus:problem:disk-full", "Insufficient storage"},
 };
 
-const Row& row_of(Reason reason) {
-  for (const Row& row : table)
-    if (row.reason == reason) return row;
-  return row_of(Reason::internal);
+/// Statuses that the guard or the HTTP library answers and no handler does.
+constexpr std::pair<int, const char*> other_statuses[] = {
+    {408, "Request timeout"}, {417, "Expectation failed"}, {505, "HTTP version not supported"}};
+
+/// The first row for which `holds`; null where there is none.
+template <class Holds>
+const Row* find_row(Holds holds) {
+  const auto at = std::find_if(std::begin(table), std::end(table), holds);
+  return at == std::end(table) ? nullptr : at;
+}
+const Row* row_of(int status) {
+  return find_row([&](const Row& row) { return row.status == status; });
 }
 
-Answer document(int status, const char* type, const char* title, const Refusal& refusal, const std::string& accept) {
+Answer document(const char* type, const char* title, int status, const Refusal& refusal, const std::string& accept) {
   Json body = {{"type", type}, {"title", title}, {"status", status}, {"detail", refusal.what()}};
-  if (!refusal.faults.empty()) {
-    body["errors"] = Json::array();
-    for (const Fault& fault : refusal.faults)
-      body["errors"].push_back({{"pointer", fault.pointer}, {"message", fault.message}});
-  }
+  for (const Fault& fault : refusal.faults)
+    body["errors"].push_back({{"pointer", fault.pointer}, {"message", fault.message}});
   Answer answer = json_answer(body, status);
   if (accept.find("application/problem+json") != std::string::npos) answer.type = "application/problem+json";
   if (!refusal.allow.empty()) answer.headers.emplace_back("Allow", refusal.allow);
@@ -67,26 +74,17 @@ Answer document(int status, const char* type, const char* title, const Refusal& 
   return answer;
 }
 
-Refusal refusal_of(const StorageError& e) {
-  const bool full = e.kind == StorageError::Kind::full;
-  Refusal refusal(full ? Reason::disk_full : Reason::unavailable, e.what());
-  refusal.retry_after = 30;
-  return refusal;
-}
-
 Answer file_problem(int error, const char* what, const std::string& accept) {
   log_error("files", {{"why", what}});
-  const bool full = error == ENOSPC || error == EDQUOT;
-  return problem(Refusal(full ? Reason::disk_full : Reason::unavailable,
-                         full ? "the disk is full" : "the service cannot read or write one of its files"),
-                 accept);
+  if (error == ENOSPC || error == EDQUOT) return problem(Refusal(Reason::disk_full, "the disk is full"), accept);
+  return problem(Refusal(Reason::unavailable, "the service cannot read or write one of its files"), accept);
 }
 
 }  // namespace
 
 Answer problem(const Refusal& refusal, const std::string& accept) {
-  const Row& row = row_of(refusal.reason);
-  return document(row.status, row.type, row.title, refusal, accept);
+  const Row& row = *find_row([&](const Row& r) { return r.reason == refusal.reason; });
+  return document(row.type, row.title, row.status, refusal, accept);
 }
 
 Answer problem(std::exception_ptr thrown, const std::string& accept) {
@@ -96,7 +94,7 @@ Answer problem(std::exception_ptr thrown, const std::string& accept) {
     return problem(e, accept);
   } catch (const StorageError& e) {
     log_error("storage", {{"why", e.what()}});
-    return problem(refusal_of(e), accept);
+    return problem(Refusal(e.disk_full ? Reason::disk_full : Reason::unavailable, e.what(), {}, 30), accept);
   } catch (const IoError& e) {
     return file_problem(e.error, e.what(), accept);
   } catch (const std::filesystem::filesystem_error& e) {
@@ -107,26 +105,17 @@ Answer problem(std::exception_ptr thrown, const std::string& accept) {
   }
 }
 
-Answer problem(int status, const std::string& accept) {
-  for (const Row& row : table)
-    if (row.status == status) return problem(Refusal(row.reason, row.title), accept);
+Answer problem(int status, const std::string& accept, const std::string& detail) {
+  const Row* row = row_of(status);
   const char* title = status_text(status);
-  return document(status, "about:blank", title, Refusal(Reason::bad_request, title), accept);
+  return document(row ? row->type : "about:blank", title, status,
+                  Refusal(Reason::bad_request, detail.empty() ? title : detail), accept);
 }
 
 const char* status_text(int status) {
-  switch (status) {
-    case 408:
-      return "Request timeout";
-    case 417:
-      return "Expectation failed";
-    case 505:
-      return "HTTP version not supported";
-    default:
-      break;
-  }
-  for (const Row& row : table)
-    if (row.status == status) return row.title;
+  if (const Row* row = row_of(status)) return row->title;
+  for (const auto& [known, text] : other_statuses)
+    if (known == status) return text;
   return status < 500 ? "Bad request" : "Internal error";
 }
 

@@ -44,4 +44,11 @@ Answer results_answer(const Json& values, bool raw, const Incoming& request) {
   return json_answer(document_of(values));
 }
 
+Json echo_results(const Json& inputs, const std::vector<std::string>& outputs) {
+  Json results = Json::object();
+  for (const std::string& name : outputs)
+    if (inputs.contains(name)) results[name] = inputs.at(name);
+  return results;
+}
+
 }  // namespace talus::service

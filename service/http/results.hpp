@@ -1,5 +1,5 @@
 #pragma once
-// The results of a process in the form that its client asked for.
+// The results of a process in the form that the client requested.
 
 #include "http/message.hpp"
 
@@ -9,5 +9,8 @@ namespace talus::service {
 /// multipart/related, unless the client accepts JSON alone.
 /// @param values  name to bare value
 Answer results_answer(const Json& values, bool raw, const Incoming& request);
+
+/// The values of the named outputs of echo.
+Json echo_results(const Json& inputs, const std::vector<std::string>& outputs);
 
 }  // namespace talus::service

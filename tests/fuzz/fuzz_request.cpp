@@ -2,7 +2,6 @@
 
 #include <cstdlib>
 
-#include "http/echo.hpp"
 #include "http/guard.hpp"
 #include "jobs/inputs.hpp"
 
@@ -32,7 +31,7 @@ void read_body(std::string_view body) {
   try {
     const Json json = parse_body(body);
     if (!json.is_object() || !json.contains("inputs") || !json.at("inputs").is_object()) return;
-    Checker outputs;
+    talus::Faults outputs;
     read_outputs(json, {"s", "x"}, outputs);
     try {
       read_echo_inputs(json.at("inputs"));
