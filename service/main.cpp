@@ -80,8 +80,8 @@ int serve(Config config) {
                     return stopping.load();
                   }};
   Routes routes;
-  for (const Routes& group : {discovery_routes(), execution_routes(), job_routes(), realization_routes(),
-                              event_routes(), operation_routes(), umbridge_routes()})
+  for (const Routes& group :
+       {discovery_routes(), job_routes(), realization_routes(), event_routes(), operation_routes(), umbridge_routes()})
     routes.insert(routes.end(), group.begin(), group.end());
   Server server(config, !tokens.wanted() && config.public_url.empty(),
                 [&](Incoming request) { return answer(std::move(request), routes, service, tokens); });

@@ -110,11 +110,8 @@ Options read_options(int argc, char** argv) {
   config.lease = std::chrono::seconds(lease);
   config.body_bytes = static_cast<std::size_t>(body_mib * mib);
   config.quotas.disk_bytes = static_cast<std::uint64_t>(min_disk_mib * mib);
-  using MemoryLimit = Config::MemoryLimit;
-  config.memory_limit = memory_mib < 0    ? MemoryLimit::none
-                        : memory_mib == 0 ? MemoryLimit::by_size
-                                          : MemoryLimit::fixed;
-  if (memory_mib > 0) config.memory_bytes = static_cast<std::uint64_t>(memory_mib * mib);
+  // No limit is for sanitizers, which reserve terabytes of address space.
+  if (memory_mib != 0.0) config.memory_bytes = static_cast<std::uint64_t>(std::max(0.0, memory_mib * mib));
   if (config.data.empty())
     options.exit = wrong("--data DIR is required");
   else if (const std::string why = split_listen(listen, config); !why.empty())

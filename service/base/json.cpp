@@ -19,10 +19,10 @@ void log_line(const char* level, const std::string& event, const Json& fields) {
 
 Json parse_body(std::string_view text) try { return parse_json(text, "body"); } catch (const ConfigError& e) {
   Fault first = e.faults.front();
-  if (!first.pointer.starts_with("body")) throw Refusal(Reason::bad_request, "the body is refused", e.faults);
+  if (!first.pointer.starts_with("body")) throw Refusal(reason::bad_request, "the body is refused", e.faults);
   first.message = first.pointer + ": " + first.message;  // a syntax error, at "body:line:column"
   first.pointer.clear();
-  throw Refusal(Reason::bad_request, "the body is not JSON", {std::move(first)});
+  throw Refusal(reason::bad_request, "the body is not JSON", {std::move(first)});
 }
 
 std::string dump(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }

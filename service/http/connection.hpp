@@ -4,7 +4,6 @@
 #include <chrono>
 #include <functional>
 #include <string>
-#include <variant>
 
 #include "http/guard.hpp"
 #include "support/files.hpp"
@@ -16,13 +15,6 @@ struct WholeRequest {
   Head head;
   std::string body;
 };
-/// An invalid request; where the next one begins is unknown, so the connection is closed.
-struct BadRequest {
-  int status;
-  std::string why;
-};
-struct Closed {};
-
 class Connection {
  public:
   using Clock = std::chrono::steady_clock;
@@ -32,7 +24,9 @@ class Connection {
   Connection(int fd, const GuardLimits& limits, std::chrono::milliseconds request_limit, std::function<bool()> stopping)
       : fd_(fd), limits_(limits), request_limit_(request_limit), stopping_(std::move(stopping)) {}
 
-  std::variant<WholeRequest, BadRequest, Closed> next();
+  /// @return nothing where the client has closed the connection or sends nothing any more
+  /// @throws BadRequest
+  std::optional<WholeRequest> next();
   /// Writes all bytes. @return false if the client is gone or too slow, or the server is stopping
   bool write(const char* data, std::size_t size);
   bool write(const std::string& text) { return write(text.data(), text.size()); }

@@ -63,7 +63,7 @@ Json process(const Exchange& exchange) {
     description["links"] = links_of(exchange, name);
     return description;
   }
-  throw Refusal(Reason::no_such_process, "there is no process with this ID; GET /processes lists them");
+  throw Refusal(reason::no_such_process, "there is no process with this ID; GET /processes lists them");
 }
 
 }  // namespace

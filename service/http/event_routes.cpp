@@ -77,7 +77,7 @@ Answer events(Exchange& exchange) {
 WaitingRequest::WaitingRequest(Service& service) : service_(service) {
   if (++service_.streams <= service_.config.streams) return;
   --service_.streams;
-  throw Refusal(Reason::unavailable, "too many requests are waiting; poll GET /jobs/ID instead", {}, 10);
+  throw Refusal(reason::unavailable, "too many requests are waiting; poll GET /jobs/ID instead", {}, 10);
 }
 
 Routes event_routes() { return {{"GET", "/jobs/{}/events", Role::read, events}}; }

@@ -18,7 +18,7 @@ std::string percent_encoded(const std::string& text) {
   std::string out;
   for (const char c : text) {
     char code[4] = {c};
-    if (!is_letter_or_digit(c) && std::string_view("-._~,").find(c) == std::string_view::npos)
+    if (!consists_of_letters_digits(code, "-._~,"))
       std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
     out += code;
   }
@@ -28,7 +28,7 @@ std::string percent_encoded(const std::string& text) {
 std::string key_of(const Exchange& exchange) {
   const std::string key = exchange.request.header("idempotency-key");
   if (key.size() > max_key)
-    throw Refusal(Reason::bad_request, "Idempotency-Key is longer than " + std::to_string(max_key) + " characters");
+    throw Refusal(reason::bad_request, "Idempotency-Key is longer than " + std::to_string(max_key) + " characters");
   return key;
 }
 
@@ -68,20 +68,20 @@ Json links(const Job& job, const Exchange& exchange) {
 }  // namespace
 
 void bad_parameter(const std::string& name, const std::string& why) {
-  throw Refusal(Reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
+  throw Refusal(reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
 }
 
 Job job_of(const Exchange& exchange) {
   std::optional<Job> job = exchange.service.store.job(exchange.captured.at(0));
-  if (!job || job->subject != exchange.subject) throw Refusal(Reason::no_such_job, "there is no job with this ID");
+  if (!job || job->subject != exchange.subject) throw Refusal(reason::no_such_job, "there is no job with this ID");
   return *job;
 }
 
 Job study_of(const Exchange& exchange) {
   Job job = job_of(exchange);
-  if (job.process != "influence-zone") throw Refusal(Reason::not_found, "jobs of this process have no realizations");
+  if (job.process != "influence-zone") throw Refusal(reason::not_found, "jobs of this process have no realizations");
   if (job.state == JobState::dismissed)
-    throw Refusal(Reason::job_dismissed, "the job was dismissed and its files were removed");
+    throw Refusal(reason::job_dismissed, "the job was dismissed and its files were removed");
   return job;
 }
 
@@ -131,7 +131,7 @@ std::optional<Answer> stored_answer(const Exchange& exchange) {
   const auto stored = exchange.service.store.stored_response(exchange.subject, key);
   if (!stored) return std::nullopt;
   if (stored->body_hash != fingerprint(exchange.request))
-    throw Refusal(Reason::unprocessable, "this Idempotency-Key was already used for a different request");
+    throw Refusal(reason::unprocessable, "this Idempotency-Key was already used for a different request");
   Answer answer{.status = stored->status, .body = stored->body};
   if (!stored->location.empty()) answer.headers.emplace_back("Location", stored->location);
   return answer;

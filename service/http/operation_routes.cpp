@@ -11,9 +11,9 @@ Answer healthy(Exchange&) { return json_answer({{"status", "ok"}}); }
 Answer ready(Exchange& exchange) {
   const Service& service = exchange.service;
   service.store.open_jobs({});  // throws when the queue cannot be read
-  if (service.stopping()) throw Refusal(Reason::unavailable, "talusd is stopping");
+  if (service.stopping()) throw Refusal(reason::unavailable, "talusd is stopping");
   if (disk_left(service.config.data) < service.config.quotas.disk_bytes)
-    throw Refusal(Reason::unavailable, "the disk has less free space than --min-disk requires");
+    throw Refusal(reason::unavailable, "the disk has less free space than --min-disk requires");
   return json_answer({{"status", "ready"}});
 }
 

@@ -111,7 +111,7 @@ Run run_of(const Exchange& exchange, const Job& job) {
   std::optional<Run> run;
   if (error == std::errc() && end == text.data() + text.size() && index >= 0)
     run = exchange.service.store.run(job.number, realization(index));
-  if (!run) throw Refusal(Reason::not_found, "the study has no such realization");
+  if (!run) throw Refusal(reason::not_found, "the study has no such realization");
   return *run;
 }
 
@@ -149,24 +149,18 @@ bool wants_svg(const Incoming& request) {
   return *format == "svg";
 }
 
-Answer picture(const std::string& text, bool svg) {
-  return {.type = svg ? "image/svg+xml" : "application/json", .body = text};
-}
-
-Answer field(Exchange& exchange) {
+/// A file that `make` makes of one run, as SVG or JSON.
+Answer picture(Exchange& exchange, std::string (Jobs::*make)(const Job&, std::int64_t, bool), bool needs_result) {
   const Job job = study_of(exchange);
   const Run run = run_of(exchange, job);
   const bool svg = wants_svg(exchange.request);
-  return picture(exchange.service.jobs.field(job, run.key.index, svg), svg);
+  if (needs_result && !run.result) throw Refusal(reason::result_not_ready, "this realization has no result yet");
+  return {.type = svg ? "image/svg+xml" : "application/json",
+          .body = (exchange.service.jobs.*make)(job, run.key.index, svg)};
 }
 
-Answer profile(Exchange& exchange) {
-  const Job job = study_of(exchange);
-  const Run run = run_of(exchange, job);
-  const bool svg = wants_svg(exchange.request);
-  if (run.state != RunState::done) throw Refusal(Reason::result_not_ready, "this realization has no result yet");
-  return picture(exchange.service.jobs.profile(job, run.key.index, svg), svg);
-}
+Answer field(Exchange& exchange) { return picture(exchange, &Jobs::field, false); }
+Answer profile(Exchange& exchange) { return picture(exchange, &Jobs::profile, true); }
 
 Answer retry(Exchange& exchange) {
   if (auto again = stored_answer(exchange)) return *again;
@@ -182,7 +176,7 @@ Answer extend(Exchange& exchange) {
   const bool good = body.is_object() && body.contains("realizations") && body.at("realizations").is_number_integer() &&
                     body.at("realizations") >= 1 && body.at("realizations") <= most_realizations;
   if (!good || body.size() != 1)
-    throw Refusal(Reason::bad_request, "the request body is invalid",
+    throw Refusal(reason::bad_request, "the request body is invalid",
                   {{"/realizations", "must be the number of realizations to add, at least 1, and the only member"}});
   if (!exchange.service.jobs.extend(job, body.at("realizations").get<std::int64_t>(), response_to_store(exchange, 200)))
     if (auto again = stored_answer(exchange)) return *again;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/digest.hpp"
-#include "http/problem.hpp"
 #include "http/service.hpp"
 #include "http/text.hpp"
 
@@ -44,17 +43,17 @@ std::string base_of(const Incoming& request, const Config& config) {
 Answer routed(Exchange& exchange, const Routes& routes) {
   const Incoming& request = exchange.request;
   if (exchange.role == Role::none && !is_open(request.path))
-    throw Refusal(Reason::unauthorized, "send an Authorization: Bearer header with a valid token");
+    throw Refusal(reason::unauthorized, "send an Authorization: Bearer header with a valid token");
   FoundRoute found = find_route(routes, request.method, request.path);
-  if (found.allow.empty()) throw Refusal(Reason::not_found, "no resource exists at this path");
+  if (found.allow.empty()) throw Refusal(reason::not_found, "no resource exists at this path");
   if (request.method == "OPTIONS") return {.status = 204, .headers = {{"Allow", found.allow}}};
   if (!found.route) {
-    Refusal refusal(Reason::method_not_allowed, request.method + " is not allowed on this path");
+    Refusal refusal(reason::method_not_allowed, request.method + " is not allowed on this path");
     refusal.allow = found.allow;
     throw refusal;
   }
   if (found.route->role > exchange.role)
-    throw Refusal(Reason::forbidden, "this token has the role read; submitting needs a token with the role submit");
+    throw Refusal(reason::forbidden, "this token has the role read; submitting needs a token with the role submit");
   exchange.captured = std::move(found.captured);
   return found.route->handler(exchange);
 }

@@ -6,7 +6,6 @@
 #include <atomic>
 
 #include "base/clock.hpp"
-#include "http/problem.hpp"
 #include "http/text.hpp"
 
 namespace talus::service {
@@ -51,14 +50,8 @@ class RequestStream : public httplib::Stream {
     begun_ = true;
     return good ? static_cast<ssize_t>(size) : -1;
   }
-  void get_remote_ip_and_port(std::string& ip, int& port) const {
-    ip.clear();
-    port = 0;
-  }
-  void get_local_ip_and_port(std::string& ip, int& port) const {
-    ip.clear();
-    port = 0;
-  }
+  void get_remote_ip_and_port(std::string&, int&) const {}
+  void get_local_ip_and_port(std::string&, int&) const {}
   socket_t socket() const { return connection_.socket(); }
 
  private:
@@ -178,17 +171,16 @@ class Server::Implementation : public httplib::Server {
     const int yes = 1;
     ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
     Connection connection(fd, limits_, request_limit_, [this] { return stopping_.load(); });
-    for (bool more = true; more && !stopping_;) {
-      const auto next = connection.next();
-      if (std::holds_alternative<Closed>(next)) return true;
-      if (const auto* bad = std::get_if<BadRequest>(&next)) {
-        log_info("refused", {{"status", bad->status}, {"why", bad->why}});
-        connection.write(raw_problem(*bad));
-        break;
+    try {
+      for (bool more = true; more && !stopping_;) {
+        const std::optional<WholeRequest> request = connection.next();
+        if (!request) return true;
+        RequestStream stream(connection, *request);
+        more = serve_one(*this, stream, !request->head.keep_alive || stopping_) && request->head.keep_alive;
       }
-      const auto& request = std::get<WholeRequest>(next);
-      RequestStream stream(connection, request);
-      more = serve_one(*this, stream, !request.head.keep_alive || stopping_) && request.head.keep_alive;
+    } catch (const BadRequest& bad) {
+      log_info("refused", {{"status", bad.status}, {"why", bad.why}});
+      connection.write(raw_problem(bad));
     }
     connection.finish();
     return true;

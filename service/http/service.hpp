@@ -34,8 +34,7 @@ class WaitingRequest {
 };
 
 Routes discovery_routes();    ///< /, /conformance, /api, /processes
-Routes execution_routes();    ///< /processes/{}/execution
-Routes job_routes();          ///< /jobs, /jobs/{}, /jobs/{}/results
+Routes job_routes();          ///< /processes/{}/execution, /jobs, /jobs/{}, /jobs/{}/results
 Routes realization_routes();  ///< histogram, realizations, retry, extend
 Routes event_routes();        ///< /jobs/{}/events
 Routes operation_routes();    ///< /healthz, /readyz, /metrics

@@ -19,15 +19,17 @@ inline std::vector<std::string> split(const std::string& text, char separator) {
   return all;
 }
 
-inline bool is_letter_or_digit(char c) {
-  return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+/// Whether a text consists of ASCII letters, digits, and the characters in `others`.
+inline bool consists_of_letters_digits(std::string_view text, std::string_view others) {
+  return std::all_of(text.begin(), text.end(), [&](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+           others.find(c) != std::string_view::npos;
+  });
 }
 
-/// Whether a text has 1 to 64 characters: ASCII letters, digits, and those in `others`.
+/// The same, with 1 to 64 characters.
 inline bool is_identifier(std::string_view text, std::string_view others) {
-  return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [&](char c) {
-    return is_letter_or_digit(c) || others.find(c) != std::string_view::npos;
-  });
+  return !text.empty() && text.size() <= 64 && consists_of_letters_digits(text, others);
 }
 
 inline std::string lower(std::string_view text) {

@@ -120,7 +120,7 @@ Answer answer_of(Exchange& exchange) try {
 } catch (const ProtocolError& e) {
   return error_answer(e);
 } catch (const Refusal& e) {
-  if (e.reason != Reason::bad_request && e.reason != Reason::quota) throw;
+  if (e.reason != reason::bad_request && e.reason != reason::quota) throw;
   std::string message = e.what();
   for (const Fault& fault : e.faults)
     if (fault.message != e.what()) message += "; " + fault.pointer + " " + fault.message;

@@ -25,7 +25,7 @@ std::vector<std::string> environment(int threads) {
 
 Command Commands::short_command(std::vector<std::string> arguments) const {
   arguments.insert(arguments.begin(), config_.program.string());
-  const bool limited = config_.memory_limit != Config::MemoryLimit::none;
+  const bool limited = config_.memory_bytes != 0;
   return {.arguments = std::move(arguments),
           .environment = environment(1),
           .limits = {.memory_bytes = limited ? short_command_memory : 0,
@@ -36,16 +36,15 @@ Command Commands::short_command(std::vector<std::string> arguments) const {
 
 executor::Limits Commands::run_limits(double particles) const {
   const auto seconds = static_cast<std::uint64_t>(config_.time_limit.count());
-  const bool by_size = config_.memory_limit == Config::MemoryLimit::by_size && particles > 0.0;
-  return {.memory_bytes = by_size ? static_cast<std::uint64_t>(reserved_always + reserve * run_memory(particles))
-                                  : config_.memory_bytes,
+  const double from_size = particles > 0.0 ? reserved_always + reserve * run_memory(particles) : 0.0;
+  return {.memory_bytes = config_.memory_bytes.value_or(static_cast<std::uint64_t>(from_size)),
           .cpu_seconds = seconds * static_cast<std::uint64_t>(config_.threads) + 60,
           .file_bytes = config_.file_bytes,
           .wall_seconds = seconds,
           .core_dumps = false};
 }
 
-/// A run outside the queue; its size is not known here, so only a fixed memory limit applies.
+/// A run outside the queue; its size is not known here, so only --memory limits it.
 Command Commands::long_run(std::vector<std::string> arguments) const {
   arguments.insert(arguments.begin(), config_.program.string());
   arguments.insert(arguments.end(), {"--threads", std::to_string(config_.threads), "--study-worker"});

@@ -38,9 +38,7 @@ struct Config {
   std::chrono::seconds lease{30};
   std::chrono::seconds time_limit{6 * 3600};  ///< of one run
   std::chrono::seconds grace{30};             ///< for workers to checkpoint when talusd is asked to stop
-  enum class MemoryLimit { by_size, fixed, none };
-  MemoryLimit memory_limit = MemoryLimit::by_size;  ///< of one run; none: sanitizers reserve terabytes of address space
-  std::uint64_t memory_bytes = 0;                   ///< of MemoryLimit::fixed
+  std::optional<std::uint64_t> memory_bytes;  ///< address space of one run; unset: from its size; 0: no limit
   std::uint64_t file_bytes = std::uint64_t{4} << 30;
   int http_threads = 256;
   std::size_t body_bytes = std::size_t{4} << 20;

@@ -127,7 +127,7 @@ const Measure& quantity_of(const std::string& name, const std::string& pointer) 
   if (const Measure* measure = find_measure(name)) return *measure;
   std::string names;
   for (const Measure& measure : measure_table) names += (names.empty() ? "" : ", ") + std::string(measure.key);
-  throw Refusal(Reason::bad_request, "no such quantity", {{pointer, "must be one of " + names}});
+  throw Refusal(reason::bad_request, "no such quantity", {{pointer, "must be one of " + names}});
 }
 
 StudyInputs read_study_inputs(const Json& inputs) {
@@ -144,7 +144,7 @@ StudyInputs read_study_inputs(const Json& inputs) {
     if (rule.name == std::string_view("case")) refuse_files(value, pointer, faults);
     given[rule.name] = is_whole(value) && rule.holds(value) ? Json(value.get<std::int64_t>()) : std::move(value);
   }
-  refuse_if_any(faults, Reason::bad_request, "the inputs are invalid");
+  refuse_if_any(faults, reason::bad_request, "the inputs are invalid");
 
   StudyInputs study{.document = given.at("case")};
   study.quantity = quantity_of(given.value("quantity", study.quantity), "/inputs/quantity").key;
@@ -153,7 +153,7 @@ StudyInputs read_study_inputs(const Json& inputs) {
   Json& options = study.document["study"];  // talus checks them there
   if (options.is_null()) options = Json::object();
   if (!options.is_object())
-    throw Refusal(Reason::bad_request, "the inputs are invalid", {{"/inputs/case/study", "must be an object"}});
+    throw Refusal(reason::bad_request, "the inputs are invalid", {{"/inputs/case/study", "must be an object"}});
   options.update(given);
   return study;
 }
@@ -174,8 +174,15 @@ Json read_echo_inputs(const Json& inputs) {
     if (!rule->holds(given)) faults.add(pointer, rule->text);
   }
   if (!inputs.contains("s")) faults.add("/inputs/s", "is missing");
-  refuse_if_any(faults, Reason::bad_request, "the inputs are invalid");
+  refuse_if_any(faults, reason::bad_request, "the inputs are invalid");
   return bare;
+}
+
+Json echo_results(const Json& inputs, const std::vector<std::string>& outputs) {
+  Json results = Json::object();
+  for (const std::string& name : outputs)
+    if (inputs.contains(name)) results[name] = inputs.at(name);
+  return results;
 }
 
 }  // namespace talus::service

@@ -1,17 +1,25 @@
 #include "jobs/jobs.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/digest.hpp"
+#include "support/csv.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
+#include "support/text.hpp"
 
 namespace talus::service {
 namespace {
 
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr double evaluations_per_second = 15e6;  ///< of a core, see README
+constexpr milliseconds histogram_age{1000};      ///< at most, while the job runs
+constexpr std::size_t profiles_kept = 16;        ///< of a job
+constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
 /// Which program or file `talus` could not use, from its error output.
 const char* unusable(const std::string& said) {
@@ -49,11 +57,36 @@ double particles_of(const Json& demand) {
     log_error("talus_failed",
               {{"exit_code", output.end.exit_code}, {"signal", output.end.signal}, {"said", output.err}});
     if (output.end.signal || output.err.find("bad_alloc") != std::string::npos)
-      throw Refusal(Reason::unprocessable, "checking the case takes more memory or time than allowed");
-    throw Refusal(Reason::internal, "the case could not be checked");
+      throw Refusal(reason::unprocessable, "checking the case takes more memory or time than allowed");
+    throw Refusal(reason::internal, "the case could not be checked");
   }
   if (faults.empty()) faults.push_back({pointer, output.err});
-  throw Refusal(Reason::bad_request, "the case cannot be run", std::move(faults));
+  throw Refusal(reason::bad_request, "the case cannot be run", std::move(faults));
+}
+
+/// Removes all but the newest requested profiles; those that the study keeps itself stay.
+void prune(const fs::path& directory) {
+  std::vector<std::pair<fs::file_time_type, fs::path>> files;
+  for (const auto& entry : fs::directory_iterator(directory))
+    if (run_of_work_name(entry.path().stem().string())) files.emplace_back(entry.last_write_time(), entry.path());
+  std::sort(files.rbegin(), files.rend());
+  std::error_code ignored;
+  for (std::size_t i = profiles_kept; i < files.size(); ++i) fs::remove(files[i].second, ignored);
+}
+
+/// @throws Refusal internal unless the command succeeded
+void check(const CommandOutput& output, const std::string& what) {
+  if (output.ok()) return;
+  log_error("talus_failed", {{"exit_code", output.end.exit_code}, {"signal", output.end.signal}, {"said", output.err}});
+  throw Refusal(reason::internal, what + " could not be made");
+}
+
+/// Drops the members that are null or contain null: a statistic without a value.
+void drop_nulls(Json& object) {
+  const auto has_null = [](const Json& value) {
+    return value.is_null() || (value.is_array() && std::find(value.begin(), value.end(), Json()) != value.end());
+  };
+  for (auto at = object.begin(); at != object.end();) at = has_null(*at) ? object.erase(at) : std::next(at);
 }
 
 }  // namespace
@@ -61,22 +94,22 @@ double particles_of(const Json& demand) {
 CommandOutput Jobs::run(const Command& command, std::chrono::milliseconds limit, bool is_long) {
   const auto patience = is_long ? seconds(60) : seconds(20);
   if (!(is_long ? long_commands_.try_acquire_for(patience) : short_commands_.try_acquire_for(patience)))
-    throw Refusal(Reason::unavailable, "too many requests of this kind at once", {}, 10);
+    throw Refusal(reason::unavailable, "too many requests of this kind at once", {}, 10);
   struct Releaser {
     Jobs& jobs;
     bool is_long;
     ~Releaser() { is_long ? jobs.long_commands_.release() : jobs.short_commands_.release(); }
   } const releaser{*this, is_long};
   CommandOutput output = run_to_end(command, data_.scratch(), limit, [this] { return stopping_.load(); });
-  if (stopping_) throw Refusal(Reason::unavailable, "talusd is stopping");
+  if (stopping_) throw Refusal(reason::unavailable, "talusd is stopping");
   if (output.timed_out)
-    throw Refusal(Reason::timeout, "this takes longer than " + std::to_string(limit.count() / 1000) + " s");
+    throw Refusal(reason::timeout, "this takes longer than " + std::to_string(limit.count() / 1000) + " s");
   const bool cut_short = !output.out.empty() && output.out.back() != '\n';
   if (!output.end.signal && (output.end.exit_code == Exit::io || cut_short)) {
     log_error("talus_cannot_write", {{"said", output.err}});
     if (disk_left(config_.data) < least_disk_bytes)
-      throw Refusal(Reason::disk_full, "no file can be written: the disk is full");
-    throw Refusal(Reason::unavailable, unusable(output.err));
+      throw Refusal(reason::disk_full, "no file can be written: the disk is full");
+    throw Refusal(reason::unavailable, unusable(output.err));
   }
   return output;
 }
@@ -89,7 +122,7 @@ Json Jobs::validate(const Json& document, const std::string& pointer) {
   const CommandOutput output = run(commands_.validate(scratch / "case.json"), seconds(60));
   if (!output.ok()) refuse_case(output, pointer);
   Json demand = Json::parse(output.out, nullptr, false);
-  if (demand.is_discarded()) throw Refusal(Reason::unavailable, "the case could not be checked; try again");
+  if (demand.is_discarded()) throw Refusal(reason::unavailable, "the case could not be checked; try again");
   return demand;
 }
 
@@ -104,7 +137,7 @@ std::size_t Jobs::field_terms(const Json& document) {
 void Jobs::check_queue(const std::string& subject) const {
   const auto check = [](std::int64_t open, std::int64_t most, const char* whose) {
     if (open >= most)
-      throw Refusal(Reason::queue_full,
+      throw Refusal(reason::queue_full,
                     std::string(whose) + " " + std::to_string(open) + " jobs are waiting or running; at most " +
                         std::to_string(most) + " may",
                     {}, 60);
@@ -117,7 +150,7 @@ void Jobs::check_queue(const std::string& subject) const {
 void Jobs::check_disk() const {
   const std::uint64_t left = disk_left(config_.data);
   if (left < config_.quotas.disk_bytes)
-    throw Refusal(Reason::disk_full, "only " + std::to_string(left >> 20) + " MiB of disk are left; " +
+    throw Refusal(reason::disk_full, "only " + std::to_string(left >> 20) + " MiB of disk are left; " +
                                          std::to_string(config_.quotas.disk_bytes >> 20) + " must stay free");
 }
 
@@ -135,7 +168,7 @@ void Jobs::check_size(double particles, double steps, std::int64_t realizations,
   at_most("/inputs/realizations", "realizations", static_cast<double>(realizations),
           static_cast<double>(config_.quotas.realizations));
   at_most("/inputs", "estimated core-hours", std::round(10.0 * hours) / 10.0, config_.quotas.core_hours);
-  refuse_if_any(faults, Reason::quota, "the job exceeds a quota");
+  refuse_if_any(faults, reason::quota, "the job exceeds a quota");
 }
 
 std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response) {
@@ -144,14 +177,12 @@ std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& respon
   return recorded;
 }
 
-std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& inputs,
-                                      const std::vector<std::string>& outputs, bool raw,
-                                      const Store::Response& response) {
-  check_queue(subject);
-  const StudyInputs study = read_study_inputs(inputs);
+std::optional<Job> Jobs::submit_study(const Submission& submission, const Store::Response& response) {
+  check_queue(submission.subject);
+  const StudyInputs study = read_study_inputs(submission.inputs);
   const Json demand = validate(study.document, "/inputs/case");
 
-  NewJob job{.id = random_hex(16), .process = "influence-zone", .subject = subject};
+  NewJob job{.id = random_hex(16), .process = "influence-zone", .subject = submission.subject};
   const Json& options = study.document.at("study");
   job.planned = options.value("realizations", std::int64_t{100});
   job.seed =
@@ -174,20 +205,22 @@ std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& in
   job.max_failed_share = plan.study.max_failed_share;
   job.may_stop_early = plan.study.stop_half_width.has_value();
   job.case_hash = plan.case_hash;
-  job.inputs = dump({{"quantity", study.quantity}, {"outputs", outputs}, {"raw", raw}});
+  job.inputs = dump({{"quantity", study.quantity}, {"outputs", submission.outputs}, {"raw", submission.raw}});
   made.move_to(data_.job(job.id));
   std::optional<Job> recorded = record(job, response);
   if (recorded) made.keep();
   return recorded;
 }
 
-std::optional<Job> Jobs::submit_echo(const std::string& subject, const Json& inputs,
-                                     const std::vector<std::string>& outputs, bool raw,
-                                     const Store::Response& response) {
-  check_queue(subject);
-  const Json kept = {{"outputs", outputs}, {"raw", raw}, {"pause", inputs.value("pause", 0.0)}, {"inputs", inputs}};
-  return record({.id = random_hex(16), .process = "echo", .subject = subject, .title = "echo", .inputs = dump(kept)},
-                response);
+std::optional<Job> Jobs::submit_echo(const Submission& submission, const Store::Response& response) {
+  check_queue(submission.subject);
+  const Json kept = {{"outputs", submission.outputs},
+                     {"raw", submission.raw},
+                     {"pause", submission.inputs.value("pause", 0.0)},
+                     {"inputs", submission.inputs}};
+  return record(
+      {.id = random_hex(16), .process = "echo", .subject = submission.subject, .title = "echo", .inputs = dump(kept)},
+      response);
 }
 
 void Jobs::dismiss(const Job& job) {
@@ -202,7 +235,7 @@ void Jobs::retry(const Job& job, const Store::Response& response) {
 }
 
 bool Jobs::extend(const Job& job, std::int64_t more, const Store::Response& response) {
-  if (job.may_stop_early) throw Refusal(Reason::conflict, "a study that stops by itself cannot be extended");
+  if (job.may_stop_early) throw Refusal(reason::conflict, "a study that stops by itself cannot be extended");
   const std::lock_guard one_at_a_time(extending_);  // two at once would both add to the same number
   const std::int64_t planned = store_.job(job.number)->planned + more;
   ended(job.state) ? check_queue(job.subject) : check_disk();  // an ended one will be open again
@@ -211,7 +244,7 @@ bool Jobs::extend(const Job& job, std::int64_t more, const Store::Response& resp
   const CommandOutput prepared =
       run(commands_.prepare(directory.resolved_case(), directory, planned, job.seed), seconds(60));
   if (!prepared.ok())
-    throw Refusal(Reason::conflict, prepared.err.empty() ? "the study cannot be extended" : prepared.err);
+    throw Refusal(reason::conflict, prepared.err.empty() ? "the study cannot be extended" : prepared.err);
   const bool fresh = store_.extend(job.number, planned, response);
   scheduler_.wake(job.number);
   return fresh;
@@ -223,9 +256,66 @@ Json Jobs::evaluate(const Json& document) {
   const TemporaryDirectory scratch = scratch_directory();
   write_file_atomically(scratch / "case.json", dump(document));
   const CommandOutput output = run(commands_.median(scratch / "case.json", scratch / "run"), config_.time_limit, true);
-  if (!output.end.signal && output.end.exit_code == Exit::bad_case) throw Refusal(Reason::bad_request, output.err);
-  if (!output.ok()) throw Refusal(Reason::internal, "the run failed: " + output.err);
+  if (!output.end.signal && output.end.exit_code == Exit::bad_case) throw Refusal(reason::bad_request, output.err);
+  if (!output.ok()) throw Refusal(reason::internal, "the run failed: " + output.err);
   return read_json((scratch / "run") / "result.json", 1 << 20);
+}
+
+Json Jobs::distribution(const Job& job, const Measure& quantity, const Bins& bins) {
+  const std::string key =
+      job.id + "/" + quantity.key + "/" + std::to_string(bins.count) + "/" + Json(bins.edges).dump();
+  return distributions_.get(key, job.version, ended(job.state) ? milliseconds(0) : histogram_age, [&] {
+    std::optional<Plan> plan = find_plan(data_.job(job.id));
+    if (!plan) throw Refusal(reason::internal, "the plan of the job is missing");
+    plan->study.realizations = job.planned;
+    Json answer =
+        talus::distribution(*plan, quantity, store_.measure_sample(job, quantity, plan->study.stop_half_width), bins);
+    drop_nulls(answer);
+    return answer;
+  });
+}
+
+Json Jobs::summary(const Job& job) const {
+  const auto text = find_file(StudyPaths{data_.job(job.id)}.summary(), max_bytes);
+  if (!text) throw Refusal(reason::result_not_ready, "there are no statistics of this job");
+  return Json::parse(*text);
+}
+
+std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
+  const TemporaryDirectory scratch = scratch_directory();
+  const fs::path file = scratch / (svg ? "field.svg" : "field.csv");
+  const CommandOutput output =
+      run(commands_.field({data_.job(job.id)}, realization(index), job.seed, file), seconds(60));
+  check(output, "the field");
+  const std::string text = read_file(file, max_bytes);
+  if (svg) return text;
+  Json json = Json::parse(output.out);
+  CsvRows rows(text);
+  rows.next();  // the header: x_m, y_m, friction_angle_deg, tan_phi
+  for (const char* key : {"x_m", "y_m", "particle_friction_angle_deg"}) json[key] = Json::array();
+  while (rows.next()) {
+    const std::vector<std::string> fields = rows.fields();
+    json["x_m"].push_back(to_number(fields.at(0)).value());
+    json["y_m"].push_back(to_number(fields.at(1)).value());
+    json["particle_friction_angle_deg"].push_back(to_number(fields.at(2)).value());
+  }
+  return dump(json);
+}
+
+std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
+  const StudyPaths study{data_.job(job.id)};
+  fs::create_directories(study.profiles());
+  const std::string extension = svg ? ".svg" : ".json";
+  const fs::path kept = study.profiles() / (std::to_string(index) + extension);
+  if (auto text = find_file(kept, max_bytes)) return *text;
+  const TemporaryDirectory scratch = scratch_directory();
+  const fs::path out = scratch / "run", file = scratch / ("profile" + extension);
+  check(run(commands_.replay(study, realization(index), job.seed, out), seconds(3600), true), "the profile");
+  check(run(commands_.profile(out, file), seconds(60)), "the profile");
+  const std::string text = read_file(file, max_bytes);
+  write_file_atomically(kept, text);
+  prune(study.profiles());
+  return text;
 }
 
 }  // namespace talus::service

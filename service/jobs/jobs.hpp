@@ -26,13 +26,10 @@ class Jobs {
         long_commands_(config.workers) {}
 
   /// Checks a study with `talus validate` and against the quotas, makes its directory and records it.
-  /// @param raw       the client wants the bare values of its results, without a document around them
   /// @param response  stored under the Idempotency-Key of the request
   /// @return the job; nothing where another request has used the key meanwhile
-  std::optional<Job> submit_study(const std::string& subject, const Json& inputs,
-                                  const std::vector<std::string>& outputs, bool raw, const Store::Response& response);
-  std::optional<Job> submit_echo(const std::string& subject, const Json& inputs,
-                                 const std::vector<std::string>& outputs, bool raw, const Store::Response& response);
+  std::optional<Job> submit_study(const Submission& submission, const Store::Response& response);
+  std::optional<Job> submit_echo(const Submission& submission, const Store::Response& response);
   void dismiss(const Job& job);
   void retry(const Job& job, const Store::Response& response);
   /// @return false where another request has used the key meanwhile

@@ -258,8 +258,7 @@ void Scheduler::move_orphans_aside() {
 }
 
 void Scheduler::drain() {
-  if (stopped_.exchange(true)) return;
-  draining_ = true;
+  if (draining_.exchange(true)) return;
   wake_.notify_one();
   if (thread_.joinable()) thread_.join();
 }

@@ -104,7 +104,7 @@ class Scheduler {
   std::condition_variable wake_;
   bool woken_ = false;
   std::set<StudyNumber> changed_;  ///< studies that the engine must read again
-  std::atomic<bool> draining_{false}, stopped_{false};
+  std::atomic<bool> draining_{false};
   std::thread thread_;
 };
 

@@ -23,8 +23,11 @@ void check_rewritten(const Head& head) {
        {"\nRange:", "\nrange:", "\nTransfer-", "\ntransfer-", "\nContent-Type:", "\ncontent-type:", "%0d", "%0A"})
     check(text.substr(text.find("\r\n")).find(forbidden) == std::string::npos);
   if (text.find("\r\nhost: ") == std::string::npos) return;  // HTTP/1.0 may come without, what is handed on is 1.1
-  check(judge(text, {}).status == 0);
-  check(judge(text, {}).body == head.body);
+  try {
+    check(judge(text, {}).body == head.body);
+  } catch (const BadRequest&) {
+    check(false);
+  }
 }
 
 void read_body(std::string_view body) {
@@ -51,8 +54,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     read_body(bytes);
     return 0;
   }
-  const Head head = judge(bytes.substr(0, *end), {});
-  if (head.status == 0) check_rewritten(head);
+  try {
+    check_rewritten(judge(bytes.substr(0, *end), {}));
+  } catch (const BadRequest&) {
+  }
   read_body(bytes.substr(*end));
   return 0;
 }

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "base/digest.hpp"
-#include "http/problem.hpp"
+#include "http/message.hpp"
 #include "http/router.hpp"
 #include "http/tokens.hpp"
 #include "options.hpp"
@@ -16,20 +16,21 @@
 namespace talus::service {
 namespace {
 
-TEST(Problem, EveryReasonHasItsRow) {
+TEST(Problem, EveryReasonHasItsType) {
   std::set<std::string> types;
-  for (int i = 0; i <= static_cast<int>(Reason::disk_full); ++i) {
-    const Answer answer = problem(Refusal(static_cast<Reason>(i), "why"), "");
+  for (const Reason* reason : reason::all) {
+    const Answer answer = problem(Refusal(*reason, "why"), "");
     const Json body = Json::parse(answer.body);
+    EXPECT_EQ(answer.status, reason->status);
     EXPECT_EQ(body["status"], answer.status);
     EXPECT_EQ(body["detail"], "why");
     types.insert(body["type"].get<std::string>());
   }
-  EXPECT_EQ(types.size(), static_cast<std::size_t>(Reason::disk_full) + 1);
+  EXPECT_EQ(types.size(), std::size(reason::all));
 }
 
 TEST(Problem, MediaTypeFollowsTheClient) {
-  const Refusal refusal(Reason::no_such_job, "x", {{"/a", "b"}});
+  const Refusal refusal(reason::no_such_job, "x", {{"/a", "b"}});
   EXPECT_EQ(problem(refusal, "*/*").type, "application/json");
   const Answer answer = problem(refusal, "application/problem+json, application/json");
   EXPECT_EQ(answer.type, "application/problem+json");

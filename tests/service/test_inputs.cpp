@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "http/results.hpp"
 #include "jobs/inputs.hpp"
 
 namespace talus::service {
@@ -80,7 +79,7 @@ TEST(Outputs, AreSelected) {
   EXPECT_TRUE(faults.empty());
   read_outputs(Json::parse(R"({"outputs": {"c": {}, "a": {"transmissionMode": "reference"}, "b": 1}})"), {"a", "b"},
                faults);
-  EXPECT_EQ(pointers([&] { refuse_if_any(faults, Reason::bad_request, ""); }),
+  EXPECT_EQ(pointers([&] { refuse_if_any(faults, reason::bad_request, ""); }),
             "/outputs/c /outputs/a/transmissionMode /outputs/b ");
 }
 

@@ -1,3 +1,6 @@
+#include <cmath>
+#include <limits>
+
 #include "studies.hpp"
 #include "study/csv.hpp"
 #include "support/error.hpp"
