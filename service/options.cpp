@@ -54,60 +54,45 @@ Options read_options(int argc, char** argv) {
   CLI::App app{"talusd: Talus as a service", "talusd"};
   app.set_version_flag("--version", std::string("talusd ") + TALUS_VERSION);
   app.set_config("--config", "", "configuration file with the same options, one per line: name = value");
+  /// An option whose default is shown by --help.
+  const auto with_default = [&app](const char* name, auto& variable, const char* text) {
+    return app.add_option(name, variable, text)->capture_default_str();
+  };
   app.add_option("--data", config.data, "directory for the queue and all results; created if missing");
-  app.add_option("--listen", listen,
-                 "address and port to listen on; port 0 picks a free one; other than loopback requires --tokens")
-      ->capture_default_str();
-  app.add_option("--executor", place, "where runs are executed: local (here) or slurm (array jobs)")
-      ->check(CLI::IsMember({"local", "slurm"}))
-      ->capture_default_str();
+  with_default("--listen", listen,
+               "address and port to listen on; port 0 picks a free one; other than loopback requires --tokens");
+  with_default("--executor", place, "where runs are executed: local (here) or slurm (array jobs)")
+      ->check(CLI::IsMember({"local", "slurm"}));
   app.add_option("--slurm", slurm, "configuration file of --executor slurm");
-  app.add_option("--workers", config.workers, "number of concurrent runs with --executor local")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("--threads", config.threads, "OpenMP threads per run")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  with_default("--workers", config.workers, "number of concurrent runs with --executor local")
+      ->check(CLI::Range(1, 1024));
+  with_default("--threads", config.threads, "OpenMP threads per run")->check(CLI::Range(1, 1024));
   app.add_option("--tokens", config.tokens, "token file; requests without a valid token are rejected");
   app.add_option("--talus", config.program, "path of the talus program; default: the one beside talusd");
   app.add_option("--models", config.models, "directory of cases to serve over UM-Bridge");
   app.add_option("--public-url", config.public_url, "base URL of absolute links when talusd is behind a proxy");
-  app.add_option("--attempts", config.attempts, "number of crashes after which a run counts as failed")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  app.add_option("--time-limit", time_limit, "wall-clock limit of a run [s]")
-      ->check(CLI::Range(1, 30 * 86400))
-      ->capture_default_str();
-  app.add_option("--grace", grace, "time for runs to write a checkpoint when talusd is stopped [s]")
-      ->check(CLI::Range(0, 3600))
-      ->capture_default_str();
-  app.add_option("--lease", lease, "time after which a run whose worker no longer responds is requeued [s]")
-      ->check(CLI::Range(3, 3600))
-      ->capture_default_str();
-  app.add_option("--memory", memory_mib, "address-space limit of a run [MiB]; 0: from its size; negative: no limit")
-      ->capture_default_str();
-  app.add_option("--nice", config.niceness, "niceness of runs")->check(CLI::Range(0, 19))->capture_default_str();
-  app.add_option("--max-body", body_mib, "MiB of a request")->check(CLI::Range(0.001, 1024.0))->capture_default_str();
-  app.add_option("--max-streams", config.streams, "maximum number of open event streams")
-      ->check(CLI::Range(1, 4096))
-      ->capture_default_str();
-  app.add_option("--http-threads", config.http_threads, "maximum number of concurrent connections")
-      ->check(CLI::Range(64, 4096))
-      ->capture_default_str();
-  app.add_option("--max-particles", config.quotas.particles, "maximum number of particles of a case")
-      ->capture_default_str();
-  app.add_option("--max-steps", config.quotas.steps, "maximum number of time steps of a run")->capture_default_str();
-  app.add_option("--max-realizations", config.quotas.realizations, "maximum number of realizations of a job")
-      ->check(CLI::Range(1, 10'000'000))
-      ->capture_default_str();
-  app.add_option("--max-core-hours", config.quotas.core_hours, "maximum estimated cost of a job [core hours]")
-      ->capture_default_str();
-  app.add_option("--max-jobs", config.quotas.open_jobs, "maximum number of open jobs")->capture_default_str();
-  app.add_option("--max-jobs-each", config.quotas.open_jobs_of_one, "maximum number of open jobs per subject")
-      ->capture_default_str();
-  app.add_option("--min-disk", min_disk_mib, "free disk space below which no job is accepted [MiB]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  with_default("--attempts", config.attempts, "number of crashes after which a run counts as failed")
+      ->check(CLI::Range(1, 100));
+  with_default("--time-limit", time_limit, "wall-clock limit of a run [s]")->check(CLI::Range(1, 30 * 86400));
+  with_default("--grace", grace, "time for runs to write a checkpoint when talusd is stopped [s]")
+      ->check(CLI::Range(0, 3600));
+  with_default("--lease", lease, "time after which a run whose worker no longer responds is requeued [s]")
+      ->check(CLI::Range(3, 3600));
+  with_default("--memory", memory_mib, "address-space limit of a run [MiB]; 0: from its size; negative: no limit");
+  with_default("--nice", config.niceness, "niceness of runs")->check(CLI::Range(0, 19));
+  with_default("--max-body", body_mib, "MiB of a request")->check(CLI::Range(0.001, 1024.0));
+  with_default("--max-streams", config.streams, "maximum number of open event streams")->check(CLI::Range(1, 4096));
+  with_default("--http-threads", config.http_threads, "maximum number of concurrent connections")
+      ->check(CLI::Range(64, 4096));
+  with_default("--max-particles", config.quotas.particles, "maximum number of particles of a case");
+  with_default("--max-steps", config.quotas.steps, "maximum number of time steps of a run");
+  with_default("--max-realizations", config.quotas.realizations, "maximum number of realizations of a job")
+      ->check(CLI::Range(1, 10'000'000));
+  with_default("--max-core-hours", config.quotas.core_hours, "maximum estimated cost of a job [core hours]");
+  with_default("--max-jobs", config.quotas.open_jobs, "maximum number of open jobs");
+  with_default("--max-jobs-each", config.quotas.open_jobs_of_one, "maximum number of open jobs per subject");
+  with_default("--min-disk", min_disk_mib, "free disk space below which no job is accepted [MiB]")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--new-token", options.new_token, "print a new token and its line for the token file, then exit")
       ->expected(2)
       ->type_name("submit|read SUBJECT");
@@ -119,16 +104,14 @@ Options read_options(int argc, char** argv) {
     return options;
   }
   if (!options.new_token.empty()) return options;
+  constexpr double mib = 1048576.0;
   config.time_limit = std::chrono::seconds(time_limit);
   config.grace = std::chrono::seconds(grace);
   config.lease = std::chrono::seconds(lease);
-  config.body_bytes = static_cast<std::size_t>(body_mib * 1048576.0);
-  config.quotas.disk_bytes = static_cast<std::uint64_t>(min_disk_mib * 1048576.0);
-  using MemoryLimit = Config::MemoryLimit;
-  config.memory_limit = memory_mib < 0    ? MemoryLimit::none
-                        : memory_mib == 0 ? MemoryLimit::by_size
-                                          : MemoryLimit::fixed;
-  if (memory_mib > 0) config.memory_bytes = static_cast<std::uint64_t>(memory_mib * 1048576.0);
+  config.body_bytes = static_cast<std::size_t>(body_mib * mib);
+  config.quotas.disk_bytes = static_cast<std::uint64_t>(min_disk_mib * mib);
+  // No limit is for sanitizers, which reserve terabytes of address space.
+  if (memory_mib != 0.0) config.memory_bytes = static_cast<std::uint64_t>(std::max(0.0, memory_mib * mib));
   if (config.data.empty())
     options.exit = wrong("--data DIR is required");
   else if (const std::string why = split_listen(listen, config); !why.empty())

@@ -1,15 +1,17 @@
 #include "http/router.hpp"
 
+#include <chrono>
+#include <cmath>
+
+#include "base/digest.hpp"
+#include "http/service.hpp"
+#include "http/text.hpp"
+
 namespace talus::service {
 namespace {
 
 std::vector<std::string> segments_of(const std::string& path) {
-  std::vector<std::string> all;
-  for (std::size_t start = 1; start <= path.size();) {
-    const std::size_t end = std::min(path.find('/', start), path.size());
-    all.push_back(path.substr(start, end - start));
-    start = end + 1;
-  }
+  std::vector<std::string> all = split(path.substr(std::min<std::size_t>(1, path.size())), '/');
   if (all.size() > 1 && all.back().empty()) all.pop_back();  // "/jobs/" is "/jobs"
   return all;
 }
@@ -27,33 +29,102 @@ bool matches(const std::vector<std::string>& pattern, const std::vector<std::str
   return true;
 }
 
-}  // namespace
+/// Paths that need no token: they reveal nothing of any job.
+bool is_open(const std::string& path) { return path == "/healthz" || path == "/readyz"; }
 
-void Router::add(const std::string& method, const std::string& pattern, Role role, Handler handler) {
-  routes_.push_back({method, segments_of(pattern), role, std::move(handler)});
+/// "http://host:port" before the path of absolute links.
+std::string base_of(const Incoming& request, const Config& config) {
+  if (!config.public_url.empty()) return config.public_url;
+  const std::string scheme = request.header("x-forwarded-proto") == "https" ? "https" : "http";
+  const std::string host = request.header("host");
+  return scheme + "://" + (host.empty() ? config.address + ":" + std::to_string(config.port) : host);
 }
 
-Router::Found Router::find(const std::string& method, const std::string& path) const {
-  Found found;
+Answer routed(Exchange& exchange, const Routes& routes) {
+  const Incoming& request = exchange.request;
+  if (exchange.role == Role::none && !is_open(request.path))
+    throw Refusal(reason::unauthorized, "send an Authorization: Bearer header with a valid token");
+  FoundRoute found = find_route(routes, request.method, request.path);
+  if (found.allow.empty()) throw Refusal(reason::not_found, "no resource exists at this path");
+  if (request.method == "OPTIONS") return {.status = 204, .headers = {{"Allow", found.allow}}};
+  if (!found.route) {
+    Refusal refusal(reason::method_not_allowed, request.method + " is not allowed on this path");
+    refusal.allow = found.allow;
+    throw refusal;
+  }
+  if (found.route->role > exchange.role)
+    throw Refusal(reason::forbidden, "this token has the role read; submitting needs a token with the role submit");
+  exchange.captured = std::move(found.captured);
+  return found.route->handler(exchange);
+}
+
+/// Adds the entity tag; the answer to a client that has this version is 304 (RFC 9110 13.1.2, weak comparison).
+void add_tag(Answer& answer, const Incoming& request) {
+  if ((request.method != "GET" && request.method != "HEAD") || answer.status != 200 || answer.type == event_stream)
+    return;
+  const std::string tag = '"' + sha256(answer.body).substr(0, 24) + '"', known = request.header("if-none-match");
+  answer.headers.emplace_back("ETag", tag);
+  answer.headers.emplace_back("Cache-Control", "no-cache");
+  if (known != "*" && known.find(tag) == std::string::npos) return;
+  answer.status = 304;
+  answer.body.clear();
+}
+
+/// The client's X-Request-Id where it is harmless in a log, otherwise a new one.
+std::string request_id(const Incoming& request) {
+  const std::string given = request.header("x-request-id");
+  return is_identifier(given, "-_.") ? given : random_hex(8);
+}
+
+}  // namespace
+
+FoundRoute find_route(const Routes& routes, const std::string& method, const std::string& path) {
+  FoundRoute found;
   const std::vector<std::string> segments = segments_of(path);
-  const auto allow = [&found](const std::string& known) {
-    found.allow += (found.allow.empty() ? "" : ", ") + known + (known == "GET" ? ", HEAD" : "");
-  };
-  for (const Route& route : routes_) {
+  for (const Route& route : routes) {
     std::vector<std::string> captured;
-    if (path == "*") {
-      if (found.allow.find(route.method) == std::string::npos) allow(route.method);
+    const std::string known = route.method;
+    if (path == "*" ? found.allow.find(known) != std::string::npos
+                    : !matches(segments_of(route.pattern), segments, captured))
       continue;
-    }
-    if (!matches(route.segments, segments, captured)) continue;
-    allow(route.method);
-    if (route.method != method && !(route.method == "GET" && method == "HEAD")) continue;
-    found.handler = &route.handler;
-    found.role = route.role;
+    found.allow += (found.allow.empty() ? "" : ", ") + known + (known == "GET" ? ", HEAD" : "");
+    if (path == "*" || (known != method && !(known == "GET" && method == "HEAD"))) continue;
+    found.route = &route;
     found.captured = std::move(captured);
   }
   if (!found.allow.empty()) found.allow += ", OPTIONS";
   return found;
+}
+
+Answer answer(Incoming request, const Routes& routes, Service& service, const Tokens& tokens) {
+  const auto begin = std::chrono::steady_clock::now();
+  Exchange exchange{.service = service, .request = std::move(request)};
+  Answer answer;
+  try {
+    exchange.base = base_of(exchange.request, service.config);
+    if (tokens.wanted()) {
+      const auto bearer = tokens.find(exchange.request.header("authorization")).value_or(Bearer{"", Role::none});
+      exchange.subject = bearer.subject;
+      exchange.role = bearer.role;
+    }
+    answer = routed(exchange, routes);
+    add_tag(answer, exchange.request);
+  } catch (...) {
+    answer = problem(std::current_exception(), exchange.request.header("accept"));
+  }
+  const std::string id = request_id(exchange.request);
+  answer.headers.emplace_back("X-Request-Id", id);
+  ++service.requests;
+  if (answer.status >= 500) ++service.failures;
+  const std::chrono::duration<double, std::milli> duration = std::chrono::steady_clock::now() - begin;
+  if (!is_open(exchange.request.path))
+    log_info("request", {{"request_id", id},
+                         {"subject", exchange.subject},
+                         {"method", exchange.request.method},
+                         {"path", exchange.request.path},
+                         {"status", answer.status},
+                         {"ms", std::round(1000.0 * duration.count()) / 1000.0}});
+  return answer;
 }
 
 }  // namespace talus::service

@@ -14,22 +14,33 @@ struct Service {
   const Config& config;
   Store& store;
   Jobs& jobs;
-  const Scheduler& scheduler;
-  Changes& changes;
+  Scheduler& scheduler;
   std::function<bool()> stopping;
-  std::atomic<int> streams{0};
+  std::atomic<int> streams{0};                         ///< waiting requests, see WaitingRequest
   std::atomic<std::int64_t> requests{0}, failures{0};  ///< all answered requests; those with 5xx
 };
 
-void add_discovery_routes(Router& router);                      ///< /, /conformance, /api, /processes
-void add_execution_routes(Router& router, Service& service);    ///< /processes/{}/execution
-void add_job_routes(Router& router, Service& service);          ///< /jobs, /jobs/{}, /jobs/{}/results
-void add_realization_routes(Router& router, Service& service);  ///< histogram, realizations, retry, extend
-void add_event_routes(Router& router, Service& service);        ///< /jobs/{}/events
-void add_operation_routes(Router& router, Service& service);    ///< /healthz, /readyz, /metrics
-void add_umbridge_routes(Router& router, Service& service);     ///< /Info, /Evaluate, ...
+/// Counts a request that waits while this object exists.
+class WaitingRequest {
+ public:
+  /// @throws Refusal unavailable where --max-streams of them wait already
+  explicit WaitingRequest(Service& service);
+  ~WaitingRequest() { --service_.streams; }
+  WaitingRequest(const WaitingRequest&) = delete;
+  WaitingRequest& operator=(const WaitingRequest&) = delete;
+
+ private:
+  Service& service_;
+};
+
+Routes discovery_routes();    ///< /, /conformance, /api, /processes
+Routes job_routes();          ///< /processes/{}/execution, /jobs, /jobs/{}, /jobs/{}/results
+Routes realization_routes();  ///< histogram, realizations, retry, extend
+Routes event_routes();        ///< /jobs/{}/events
+Routes operation_routes();    ///< /healthz, /readyz, /metrics
+Routes umbridge_routes();     ///< /Info, /Evaluate, ...
 
 /// All stages of a request: token, route, handler, problem, ETag, log line.
-Answer answer(const Incoming& request, const Router& router, Service& service, const Tokens& tokens);
+Answer answer(Incoming request, const Routes& routes, Service& service, const Tokens& tokens);
 
 }  // namespace talus::service

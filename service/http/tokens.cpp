@@ -6,16 +6,13 @@
 #include <stdexcept>
 
 #include "base/digest.hpp"
+#include "http/text.hpp"
 #include "support/files.hpp"
 
 namespace talus::service {
 namespace {
 
-bool is_subject(const std::string& text) {
-  return !text.empty() && text.size() <= 64 &&
-         text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._@-") ==
-             std::string::npos;
-}
+bool is_subject(const std::string& text) { return is_identifier(text, "._@-"); }
 
 std::optional<Role> role_of(const std::string& word) {
   if (word == "submit") return Role::submit;

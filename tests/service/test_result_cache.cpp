@@ -4,7 +4,7 @@
 #include <thread>
 #include <vector>
 
-#include "jobs/latest_answers.hpp"
+#include "jobs/result_cache.hpp"
 
 namespace talus::service {
 namespace {
@@ -12,33 +12,33 @@ namespace {
 constexpr std::chrono::hours year{24 * 365};  ///< longer than this machine has been up
 using std::chrono::milliseconds;
 
-struct LatestAnswersTest : testing::Test {
-  LatestAnswers answers;
+struct ResultCacheTest : testing::Test {
+  ResultCache cache;
   std::atomic<int> made{0};
 
   Json get(const std::string& key, std::int64_t version, milliseconds max_age = {}) {
-    return answers.get(key, version, max_age, [&] { return Json(++made); });
+    return cache.get(key, version, max_age, [&] { return Json(++made); });
   }
 };
 
-TEST_F(LatestAnswersTest, TheSameVersionIsMadeOnce) {
+TEST_F(ResultCacheTest, OneVersionIsComputedOnce) {
   EXPECT_EQ(get("a", 0), 1);
   EXPECT_EQ(get("a", 0), 1);
   EXPECT_EQ(get("b", 0), 2);
   EXPECT_EQ(get("a", 1), 3);
 }
 
-TEST_F(LatestAnswersTest, AYoungOneOfAnotherVersionWillDo) {
+TEST_F(ResultCacheTest, AYoungResultOfAnEarlierVersionIsReturned) {
   EXPECT_EQ(get("a", 0, year), 1);
   EXPECT_EQ(get("a", 1, year), 1);
   EXPECT_EQ(get("a", 1, milliseconds(0)), 2);
 }
 
-TEST_F(LatestAnswersTest, WhoAskTogetherWaitForOne) {
+TEST_F(ResultCacheTest, ConcurrentRequestsComputeItOnce) {
   std::vector<std::thread> threads;
   for (int i = 0; i < 8; ++i)
     threads.emplace_back([&] {
-      const Json answer = answers.get("a", 7, {}, [&] {
+      const Json answer = cache.get("a", 7, {}, [&] {
         std::this_thread::sleep_for(milliseconds(20));
         return Json(++made);
       });
@@ -47,12 +47,12 @@ TEST_F(LatestAnswersTest, WhoAskTogetherWaitForOne) {
   for (std::thread& thread : threads) thread.join();
 }
 
-TEST_F(LatestAnswersTest, AfterAFailureTheNextOneTriesAgain) {
-  EXPECT_THROW(answers.get("a", 0, year, []() -> Json { throw std::runtime_error("x"); }), std::runtime_error);
+TEST_F(ResultCacheTest, AfterAnExceptionTheNextRequestTriesAgain) {
+  EXPECT_THROW(cache.get("a", 0, year, []() -> Json { throw std::runtime_error("x"); }), std::runtime_error);
   EXPECT_EQ(get("a", 0, year), 1);
 }
 
-TEST_F(LatestAnswersTest, TheOldestAreForgotten) {
+TEST_F(ResultCacheTest, TheLeastRecentlyUsedIsDropped) {
   for (int i = 0; i < 65; ++i) get(std::to_string(i), 0);
   EXPECT_EQ(get("1", 0), 2);
   EXPECT_EQ(get("0", 0), 66);
