@@ -30,16 +30,17 @@ fs::path default_program() {
   return own.parent_path() / "talus";
 }
 
+/// Whether only this machine can reach an address.
+bool is_loopback(const std::string& address) {
+  return address == "localhost" || address == "::1" || address.starts_with("127.");
+}
+
 int wrong(const std::string& what) {
   std::cerr << "talusd: " << what << "\n";
   return 2;
 }
 
 }  // namespace
-
-bool is_loopback(const std::string& address) {
-  return address == "localhost" || address == "::1" || address.starts_with("127.");
-}
 
 Options read_options(int argc, char** argv) {
   Options options;
