@@ -1,6 +1,5 @@
 // Landing page, conformance classes, processes, OpenAPI.
 
-#include "http/documents.hpp"
 #include "http/lookup.hpp"
 #include "http/service.hpp"
 

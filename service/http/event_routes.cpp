@@ -13,7 +13,8 @@ using Steady = std::chrono::steady_clock;
 constexpr std::int64_t longest_wait = 60;           ///< of a long poll [s]
 constexpr std::chrono::minutes longest_stream{60};  ///< then the client reconnects
 constexpr std::chrono::milliseconds quiet{3000};    ///< then a comment is sent, to notice a client that is gone
-constexpr std::chrono::milliseconds pace{200};      ///< between two events
+constexpr const char* poll_instead = "poll GET /jobs/ID instead";
+constexpr std::chrono::milliseconds pace{200};  ///< between two events
 
 /// Waits until the job's version is above `seen`, or it has ended, or the time is up. @return the job as it is then
 Job wait_for_change(const Exchange& exchange, std::int64_t seen, Steady::time_point until) {
@@ -29,7 +30,7 @@ Job wait_for_change(const Exchange& exchange, std::int64_t seen, Steady::time_po
 Answer long_poll(Exchange& exchange, std::int64_t seconds) {
   const std::int64_t seen =
       whole_number(exchange.request, "since", 0, std::int64_t{1} << 62).value_or(job_of(exchange).version);
-  const WaitingRequest waiting(exchange.service);
+  const WaitingRequest waiting(exchange.service, poll_instead);
   const Job job = wait_for_change(exchange, seen, Steady::now() + std::chrono::seconds(seconds));
   Json info = status_info(job, exchange);
   info["version"] = job.version;
@@ -60,13 +61,13 @@ Answer events(Exchange& exchange) {
   std::int64_t seen = 0;
   const std::string last = exchange.request.header("last-event-id");
   std::from_chars(last.data(), last.data() + last.size(), seen);
-  const auto waiting = std::make_shared<WaitingRequest>(exchange.service);
+  const auto waiting = std::make_shared<WaitingRequest>(exchange.service, poll_instead);
   Answer answer{.type = event_stream};
   if (exchange.request.method != "HEAD")
     answer.stream = [waiting, exchange, seen](const Sink& sink) {
       try {
         stream(exchange, seen, sink);
-      } catch (const std::exception&) {  // the job is gone, or the queue cannot be read: the client asks again
+      } catch (const std::exception&) {  // the job is dismissed, or the queue cannot be read: the client reconnects
       }
     };
   return answer;
@@ -74,10 +75,10 @@ Answer events(Exchange& exchange) {
 
 }  // namespace
 
-WaitingRequest::WaitingRequest(Service& service) : service_(service) {
+WaitingRequest::WaitingRequest(Service& service, const std::string& advice) : service_(service) {
   if (++service_.streams <= service_.config.streams) return;
   --service_.streams;
-  throw Refusal(reason::unavailable, "too many requests are waiting; poll GET /jobs/ID instead", {}, 10);
+  throw Refusal(reason::unavailable, "too many requests are waiting; " + advice, {}, 10);
 }
 
 Routes event_routes() { return {{"GET", "/jobs/{}/events", Role::read, events}}; }

@@ -97,7 +97,7 @@ Answer submit(Exchange& exchange, Submit submit_job, const Submission& submissio
 void wait(double seconds, Service& service) {
   if (seconds <= 0.0) return;
   using Clock = std::chrono::steady_clock;
-  const WaitingRequest waiting(service);
+  const WaitingRequest waiting(service, "send Prefer: respond-async");
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
   while (Clock::now() < end && !service.stopping())
     std::this_thread::sleep_for(

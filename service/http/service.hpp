@@ -1,10 +1,10 @@
 #pragma once
-// Shared state of the handlers (thread-safe), and the groups of routes.
+// Shared state of the handlers (thread-safe), and the routes.
 
 #include <atomic>
 #include <functional>
 
-#include "http/router.hpp"
+#include "http/message.hpp"
 #include "http/tokens.hpp"
 #include "jobs/jobs.hpp"
 
@@ -23,8 +23,8 @@ struct Service {
 /// Counts a request that waits while this object exists.
 class WaitingRequest {
  public:
-  /// @throws Refusal unavailable where --max-streams of them wait already
-  explicit WaitingRequest(Service& service);
+  /// @throws Refusal unavailable, with advice, where --max-streams of them wait already
+  WaitingRequest(Service& service, const std::string& advice);
   ~WaitingRequest() { --service_.streams; }
   WaitingRequest(const WaitingRequest&) = delete;
   WaitingRequest& operator=(const WaitingRequest&) = delete;
@@ -33,12 +33,36 @@ class WaitingRequest {
   Service& service_;
 };
 
+using Handler = Answer (*)(Exchange&);
+
+struct Route {
+  const char* method;
+  const char* pattern;  ///< "/jobs/{}/results": {} stands for one segment
+  Role role;            ///< minimum role of the token
+  Handler handler;
+};
+
+using Routes = std::vector<Route>;
+
+/// What a request asks for.
+struct FoundRoute {
+  const Route* route = nullptr;  ///< null: no such path or, with `allow`, not this method
+  std::vector<std::string> captured = {};
+  std::string allow = {};  ///< methods allowed on the path; empty: no such path
+};
+/// HEAD is answered by the handler of GET. Path "*" is the server: it allows what any path does, and has no handler.
+FoundRoute find_route(const Routes& routes, const std::string& method, const std::string& path);
+
 Routes discovery_routes();    ///< /, /conformance, /api, /processes
 Routes job_routes();          ///< /processes/{}/execution, /jobs, /jobs/{}, /jobs/{}/results
 Routes realization_routes();  ///< histogram, realizations, retry, extend
 Routes event_routes();        ///< /jobs/{}/events
 Routes operation_routes();    ///< /healthz, /readyz, /metrics
 Routes umbridge_routes();     ///< /Info, /Evaluate, ...
+
+// Documents compiled into the program.
+const std::string& openapi_text();                                        ///< schemas/openapi.json
+const std::vector<std::pair<std::string, std::string>>& process_texts();  ///< schemas/processes/*.json: name, text
 
 /// All stages of a request: token, route, handler, problem, ETag, log line.
 Answer answer(Incoming request, const Routes& routes, Service& service, const Tokens& tokens);

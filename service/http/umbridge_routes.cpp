@@ -2,7 +2,7 @@
 // quantification. A model is a case in --models; its input is the coefficients of its random field [xi_1..xi_M] and, if
 // config.parameters names some, a second vector of their values; its output is the five measures of the front.
 //
-// The protocol wants, in this order: is the model known, is the feature there, are the inputs right; errors are
+// The protocol prescribes the order of the checks: model, feature, inputs. Errors are
 // {"error": {"type", "message"}} with status 400.
 
 #include <algorithm>

@@ -21,74 +21,43 @@ std::vector<std::string> environment(int threads) {
   return all;
 }
 
-}  // namespace
-
-Command Commands::short_command(std::vector<std::string> arguments) const {
-  arguments.insert(arguments.begin(), config_.program.string());
-  const bool limited = config_.memory_bytes != 0;
-  return {.arguments = std::move(arguments),
-          .environment = environment(1),
-          .limits = {.memory_bytes = limited ? short_command_memory : 0,
-                     .cpu_seconds = 120,
-                     .file_bytes = config_.file_bytes,
-                     .core_dumps = false}};
-}
-
-executor::Limits Commands::run_limits(double particles) const {
-  const auto seconds = static_cast<std::uint64_t>(config_.time_limit.count());
+executor::Limits run_limits(const Config& config, double particles) {
+  const auto seconds = static_cast<std::uint64_t>(config.time_limit.count());
   const double from_size = particles > 0.0 ? reserved_always + reserve * run_memory(particles) : 0.0;
-  return {.memory_bytes = config_.memory_bytes.value_or(static_cast<std::uint64_t>(from_size)),
-          .cpu_seconds = seconds * static_cast<std::uint64_t>(config_.threads) + 60,
-          .file_bytes = config_.file_bytes,
+  return {.memory_bytes = config.memory_bytes.value_or(static_cast<std::uint64_t>(from_size)),
+          .cpu_seconds = seconds * static_cast<std::uint64_t>(config.threads) + 60,
+          .file_bytes = config.file_bytes,
           .wall_seconds = seconds,
           .core_dumps = false};
 }
 
-/// A run outside the queue; its size is not known here, so only --memory limits it.
-Command Commands::long_run(std::vector<std::string> arguments) const {
-  arguments.insert(arguments.begin(), config_.program.string());
-  arguments.insert(arguments.end(), {"--threads", std::to_string(config_.threads), "--study-worker"});
+}  // namespace
+
+Command short_command(const Config& config, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), config.program.string());
+  const bool limited = config.memory_bytes != 0;
   return {.arguments = std::move(arguments),
-          .environment = environment(config_.threads),
-          .limits = run_limits(0.0),
-          .niceness = config_.niceness};
+          .environment = environment(1),
+          .limits = {.memory_bytes = limited ? short_command_memory : 0,
+                     .cpu_seconds = 120,
+                     .file_bytes = config.file_bytes,
+                     .core_dumps = false}};
 }
 
-Command Commands::validate(const std::filesystem::path& case_file) const {
-  return short_command({"validate", case_file.string(), "--json"});
+Command single_run(const Config& config, std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), {config.program.string(), "run"});
+  arguments.insert(arguments.end(), {"--threads", std::to_string(config.threads), "--study-worker"});
+  return {.arguments = std::move(arguments),
+          .environment = environment(config.threads),
+          .limits = run_limits(config, 0.0),
+          .niceness = config.niceness};
 }
 
-Command Commands::prepare(const std::filesystem::path& case_file, const StudyPaths& study, std::int64_t realizations,
-                          std::int64_t seed) const {
-  return short_command({"study", case_file.string(), "--out", study.root.string(), "--realizations",
-                        std::to_string(realizations), "--seed", std::to_string(seed), "--prepare"});
-}
-
-Command Commands::run(const StudyInfo& study, const RunKey& key, double particles) const {
-  return {.arguments = run_arguments({config_.program.string(), "run"}, study, key, config_.threads),
-          .environment = environment(config_.threads),
-          .limits = run_limits(particles),
-          .niceness = config_.niceness};
-}
-
-Command Commands::replay(const StudyPaths& study, const RunKey& run, std::int64_t seed,
-                         const std::filesystem::path& out) const {
-  return long_run({"run", study.resolved_case().string(), "--realization", std::to_string(run.index), "--seed",
-                   std::to_string(seed), "--out", out.string()});
-}
-
-Command Commands::median(const std::filesystem::path& case_file, const std::filesystem::path& out) const {
-  return long_run({"run", case_file.string(), "--seed", "0", "--out", out.string()});
-}
-
-Command Commands::field(const StudyPaths& study, const RunKey& run, std::int64_t seed,
-                        const std::filesystem::path& out) const {
-  return short_command({"field", study.resolved_case().string(), "--realization", std::to_string(run.index), "--seed",
-                        std::to_string(seed), "--out", out.string(), "--json"});
-}
-
-Command Commands::profile(const std::filesystem::path& run_directory, const std::filesystem::path& out) const {
-  return short_command({"profile", run_directory.string(), "--out", out.string()});
+Command study_run(const Config& config, const StudyInfo& study, const RunKey& key, double particles) {
+  return {.arguments = run_arguments({config.program.string(), "run"}, study, key, config.threads),
+          .environment = environment(config.threads),
+          .limits = run_limits(config, particles),
+          .niceness = config.niceness};
 }
 
 }  // namespace talus::service

@@ -91,19 +91,33 @@ void drop_nulls(Json& object) {
 
 }  // namespace
 
-CommandOutput Jobs::run(const Command& command, std::chrono::milliseconds limit, bool is_long) {
-  const auto patience = is_long ? seconds(60) : seconds(20);
-  if (!(is_long ? long_commands_.try_acquire_for(patience) : short_commands_.try_acquire_for(patience)))
+CommandOutput Jobs::run_command(std::vector<std::string> arguments, seconds limit) {
+  return run(short_command(config_, std::move(arguments)), limit, running_commands_, seconds(20));
+}
+
+CommandOutput Jobs::run_once(std::vector<std::string> arguments, seconds limit) {
+  return run(single_run(config_, std::move(arguments)), limit, running_runs_, seconds(60));
+}
+
+CommandOutput Jobs::prepare(const fs::path& case_file, const StudyPaths& directory, std::int64_t realizations,
+                            std::int64_t seed) {
+  return run_command({"study", case_file.string(), "--out", directory.root.string(), "--realizations",
+                      std::to_string(realizations), "--seed", std::to_string(seed), "--prepare"},
+                     seconds(60));
+}
+
+template <class Semaphore>
+CommandOutput Jobs::run(const Command& command, seconds limit, Semaphore& places, seconds patience) {
+  if (!places.try_acquire_for(patience))
     throw Refusal(reason::unavailable, "too many requests of this kind at once", {}, 10);
   struct Releaser {
-    Jobs& jobs;
-    bool is_long;
-    ~Releaser() { is_long ? jobs.long_commands_.release() : jobs.short_commands_.release(); }
-  } const releaser{*this, is_long};
+    Semaphore& places;
+    ~Releaser() { places.release(); }
+  } const releaser{places};
   CommandOutput output = run_to_end(command, data_.scratch(), limit, [this] { return stopping_.load(); });
   if (stopping_) throw Refusal(reason::unavailable, "talusd is stopping");
   if (output.timed_out)
-    throw Refusal(reason::timeout, "this takes longer than " + std::to_string(limit.count() / 1000) + " s");
+    throw Refusal(reason::timeout, "this takes longer than " + std::to_string(limit.count()) + " s");
   const bool cut_short = !output.out.empty() && output.out.back() != '\n';
   if (!output.end.signal && (output.end.exit_code == Exit::io || cut_short)) {
     log_error("talus_cannot_write", {{"said", output.err}});
@@ -119,7 +133,7 @@ TemporaryDirectory Jobs::scratch_directory() const { return TemporaryDirectory(d
 Json Jobs::validate(const Json& document, const std::string& pointer) {
   const TemporaryDirectory scratch = scratch_directory();
   write_file_atomically(scratch / "case.json", dump(document));
-  const CommandOutput output = run(commands_.validate(scratch / "case.json"), seconds(60));
+  const CommandOutput output = run_command({"validate", scratch / "case.json", "--json"}, seconds(60));
   if (!output.ok()) refuse_case(output, pointer);
   Json demand = Json::parse(output.out, nullptr, false);
   if (demand.is_discarded()) throw Refusal(reason::unavailable, "the case could not be checked; try again");
@@ -194,8 +208,7 @@ std::optional<Job> Jobs::submit_study(const Submission& submission, const Store:
   write_file_atomically(scratch / "case.json", dump(study.document));
   TemporaryDirectory made(data_.unfinished(job.id));
   const StudyPaths directory{made.path()};
-  const CommandOutput prepared =
-      run(commands_.prepare(scratch / "case.json", directory, job.planned, job.seed), seconds(60));
+  const CommandOutput prepared = prepare(scratch / "case.json", directory, job.planned, job.seed);
   if (!prepared.ok()) refuse_case(prepared, "/inputs/case");
 
   const Plan plan = find_plan(directory.root).value();
@@ -241,8 +254,7 @@ bool Jobs::extend(const Job& job, std::int64_t more, const Store::Response& resp
   ended(job.state) ? check_queue(job.subject) : check_disk();  // an ended one will be open again
   check_size(job.particles, job.steps, planned, "/realizations");
   const StudyPaths directory{data_.job(job.id)};
-  const CommandOutput prepared =
-      run(commands_.prepare(directory.resolved_case(), directory, planned, job.seed), seconds(60));
+  const CommandOutput prepared = prepare(directory.resolved_case(), directory, planned, job.seed);
   if (!prepared.ok())
     throw Refusal(reason::conflict, prepared.err.empty() ? "the study cannot be extended" : prepared.err);
   const bool fresh = store_.extend(job.number, planned, response);
@@ -255,7 +267,8 @@ Json Jobs::evaluate(const Json& document) {
   check_size(particles_of(demand), demand.at("steps").get<double>(), 1);
   const TemporaryDirectory scratch = scratch_directory();
   write_file_atomically(scratch / "case.json", dump(document));
-  const CommandOutput output = run(commands_.median(scratch / "case.json", scratch / "run"), config_.time_limit, true);
+  const CommandOutput output =
+      run_once({scratch / "case.json", "--seed", "0", "--out", scratch / "run"}, config_.time_limit);
   if (!output.end.signal && output.end.exit_code == Exit::bad_case) throw Refusal(reason::bad_request, output.err);
   if (!output.ok()) throw Refusal(reason::internal, "the run failed: " + output.err);
   return read_json((scratch / "run") / "result.json", 1 << 20);
@@ -285,7 +298,9 @@ std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
   const TemporaryDirectory scratch = scratch_directory();
   const fs::path file = scratch / (svg ? "field.svg" : "field.csv");
   const CommandOutput output =
-      run(commands_.field({data_.job(job.id)}, realization(index), job.seed, file), seconds(60));
+      run_command({"field", StudyPaths{data_.job(job.id)}.resolved_case(), "--realization", std::to_string(index),
+                   "--seed", std::to_string(job.seed), "--out", file, "--json"},
+                  seconds(60));
   check(output, "the field");
   const std::string text = read_file(file, max_bytes);
   if (svg) return text;
@@ -310,8 +325,11 @@ std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
   if (auto text = find_file(kept, max_bytes)) return *text;
   const TemporaryDirectory scratch = scratch_directory();
   const fs::path out = scratch / "run", file = scratch / ("profile" + extension);
-  check(run(commands_.replay(study, realization(index), job.seed, out), seconds(3600), true), "the profile");
-  check(run(commands_.profile(out, file), seconds(60)), "the profile");
+  check(run_once({study.resolved_case(), "--realization", std::to_string(index), "--seed", std::to_string(job.seed),
+                  "--out", out},
+                 seconds(3600)),
+        "the profile");
+  check(run_command({"profile", out, "--out", file}, seconds(60)), "the profile");
   const std::string text = read_file(file, max_bytes);
   write_file_atomically(kept, text);
   prune(study.profiles());

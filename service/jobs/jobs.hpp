@@ -18,12 +18,7 @@ namespace talus::service {
 class Jobs {
  public:
   Jobs(const Config& config, Store& store, Scheduler& scheduler)
-      : config_(config),
-        data_{config.data},
-        store_(store),
-        scheduler_(scheduler),
-        commands_(config),
-        long_commands_(config.workers) {}
+      : config_(config), data_{config.data}, store_(store), scheduler_(scheduler), running_runs_(config.workers) {}
 
   /// Checks a study with `talus validate` and against the quotas, makes its directory and records it.
   /// @param response  stored under the Idempotency-Key of the request
@@ -60,16 +55,25 @@ class Jobs {
   void check_size(double particles, double steps, std::int64_t realizations, const std::string& pointer = "") const;
   void check_queue(const std::string& subject) const;
   std::optional<Job> record(const NewJob& job, const Store::Response& response);
-  CommandOutput run(const Command& command, std::chrono::milliseconds limit, bool is_long = false);
+  /// `talus ARGUMENTS`, for at most `limit`. @throws Refusal where it cannot start, takes longer, or cannot read or
+  /// write
+  CommandOutput run_command(std::vector<std::string> arguments, std::chrono::seconds limit);
+  /// `talus run ARGUMENTS` outside the queue.
+  CommandOutput run_once(std::vector<std::string> arguments, std::chrono::seconds limit);
+  template <class Semaphore>
+  CommandOutput run(const Command& command, std::chrono::seconds limit, Semaphore& places,
+                    std::chrono::seconds patience);
+  /// Makes `directory` that of a study, or extends the study in it.
+  CommandOutput prepare(const std::filesystem::path& case_file, const StudyPaths& directory, std::int64_t realizations,
+                        std::int64_t seed);
   TemporaryDirectory scratch_directory() const;
 
   const Config& config_;
   DataDirectory data_;
   Store& store_;
   Scheduler& scheduler_;
-  Commands commands_;
-  std::counting_semaphore<64> short_commands_{4};  ///< at a time
-  std::counting_semaphore<1024> long_commands_;    ///< runs outside the queue at a time
+  std::counting_semaphore<64> running_commands_{4};  ///< at a time
+  std::counting_semaphore<1024> running_runs_;       ///< runs outside the queue at a time
   std::atomic<bool> stopping_{false};
   std::mutex extending_;
   ResultCache distributions_, field_terms_;

@@ -1,11 +1,10 @@
 #pragma once
 // The results of expensive requests, kept for requests of the same kind.
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -14,7 +13,8 @@
 
 namespace talus::service {
 
-/// The 64 results used last. Concurrent requests for the same key compute it once. Thread-safe.
+/// At most 64 results; a new one then starts the cache afresh. Concurrent requests for the same key compute it once.
+/// Thread-safe.
 class ResultCache {
  public:
   /// @param version  of the data that the result depends on, >= 0
@@ -38,29 +38,22 @@ class ResultCache {
   static constexpr std::size_t capacity = 64;
 
   struct Entry {
-    std::string key;
     std::mutex computing = {};
     std::int64_t version = -1;  ///< -1: no result yet
     Steady::time_point computed = {};
     Json result = {};
   };
 
-  /// The entry of a key, moved to the front; the least recently used one is dropped.
   std::shared_ptr<Entry> find(const std::string& key) {
     const std::lock_guard lock(mutex_);
-    const auto at = std::find_if(entries_.begin(), entries_.end(), [&](const auto& e) { return e->key == key; });
-    if (at != entries_.end()) {
-      entries_.splice(entries_.begin(), entries_, at);
-    } else {
-      entries_.push_front(std::make_shared<Entry>());
-      entries_.front()->key = key;
-      if (entries_.size() > capacity) entries_.pop_back();
-    }
-    return entries_.front();
+    if (entries_.size() >= capacity && !entries_.contains(key)) entries_.clear();
+    std::shared_ptr<Entry>& entry = entries_[key];
+    if (!entry) entry = std::make_shared<Entry>();
+    return entry;
   }
 
   std::mutex mutex_;
-  std::list<std::shared_ptr<Entry>> entries_;  ///< last used first
+  std::map<std::string, std::shared_ptr<Entry>> entries_;
 };
 
 }  // namespace talus::service

@@ -40,16 +40,14 @@ std::unique_ptr<executor::Executor> make_executor(const Config& config) {
 }  // namespace
 
 Scheduler::Scheduler(const Config& config, Store& store)
-    : config_(config),
-      data_{config.data},
-      store_(store),
-      commands_(config),
-      engine_(store, make_executor(config), engine_options()) {}
+    : config_(config), data_{config.data}, store_(store), engine_(store, make_executor(config), engine_options()) {}
 
 EngineOptions Scheduler::engine_options() {
   return {.attempts = config_.attempts,
-          .command = [this](const StudyInfo& study,
-                            const RunKey& key) { return commands_.run(study, key, store_.job(study.name)->particles); },
+          .command =
+              [this](const StudyInfo& study, const RunKey& key) {
+                return study_run(config_, study, key, store_.job(study.name)->particles);
+              },
           .room_on_disk = [this] { return room_on_disk(); },
           .report = [this](const RunEvent& event) { count(event); }};
 }

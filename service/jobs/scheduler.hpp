@@ -89,7 +89,6 @@ class Scheduler {
   DataDirectory data_;
   Store& store_;
   ChangeNotifier changes_;
-  Commands commands_;
   RunCounters counters_;
   Engine engine_;
 

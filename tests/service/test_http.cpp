@@ -7,7 +7,7 @@
 
 #include "base/digest.hpp"
 #include "http/message.hpp"
-#include "http/router.hpp"
+#include "http/service.hpp"
 #include "http/tokens.hpp"
 #include "options.hpp"
 #include "queue/database.hpp"

@@ -52,10 +52,12 @@ TEST_F(ResultCacheTest, AfterAnExceptionTheNextRequestTriesAgain) {
   EXPECT_EQ(get("a", 0, year), 1);
 }
 
-TEST_F(ResultCacheTest, TheLeastRecentlyUsedIsDropped) {
-  for (int i = 0; i < 65; ++i) get(std::to_string(i), 0);
-  EXPECT_EQ(get("1", 0), 2);
+TEST_F(ResultCacheTest, HoldsAtMost64Results) {
+  for (int i = 0; i < 64; ++i) get(std::to_string(i), 0);
+  EXPECT_EQ(get("0", 0), 1);
+  EXPECT_EQ(get("64", 0), 65);
   EXPECT_EQ(get("0", 0), 66);
+  EXPECT_EQ(get("64", 0), 65);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "http/router.hpp"
+// From a request to its answer: token, route, handler, problem, ETag, log line.
 
 #include <chrono>
 #include <cmath>
