@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "figures/canvas.hpp"
+#include "figures/sheet.hpp"
 #include "figures/study_files.hpp"
 #include "particles/geometry_input.hpp"
 
@@ -34,7 +34,7 @@ Sheet chart(const StudyFiles& study, std::string_view subtitle, const Canvas& ca
 /// "200 realizations" or "198 of 200 realizations done, 2 failed".
 std::string count_text(const StudyFiles& study);
 
-/// "34.12 [33.98, 34.26] m", as far as known.
+/// "34.12 [33.98, 34.26] m"; "unknown", or without the interval, where the sample is too small.
 std::string interval_text(const std::optional<double>& value, const std::optional<Interval>& interval);
 
 }  // namespace talus::figures

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "figures/canvas.hpp"
+#include "figures/sheet.hpp"
 #include "math/angle.hpp"
 
 namespace talus::figures {

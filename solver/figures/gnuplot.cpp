@@ -9,7 +9,7 @@
 #include <cstring>
 #include <memory>
 
-#include "figures/script.hpp"
+#include "figures/sheet.hpp"
 #include "support/error.hpp"
 
 extern char** environ;

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "figures/script.hpp"
+#include "figures/sheet.hpp"
 #include "particles/geometry_input.hpp"
 
 namespace talus::figures {

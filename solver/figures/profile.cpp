@@ -50,7 +50,7 @@ SoilElements soil_image(const Drawing& d, const Snapshot& shot, ColourRange rang
   }
   Image image = disk_image(disks, disk_radius * d.dx, std::max(0.5 / d.layout.metre, d.dx / 6));
   const std::string pixel = number(image.pixel);
-  // The second element draws nothing: it only brings the colour bar.
+  // The second element draws no point; the colour bar needs it.
   return {{"'-' binary array=(" + std::to_string(image.columns) + "," + std::to_string(image.rows) +
                ") format='%uchar%uchar%uchar%uchar' origin=(" + number(image.first.x) + "," + number(image.first.y) +
                ") dx=" + pixel + " dy=" + pixel + " using 1:2:3:4 with rgbalpha",

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "figures/canvas.hpp"
+#include "figures/sheet.hpp"
 #include "particles/geometry_input.hpp"
 #include "simulation/frame.hpp"
 

@@ -1,12 +1,8 @@
 #include "figures/study_files.hpp"
 
-#include <algorithm>
-
-#include "support/csv.hpp"
+#include "study/csv.hpp"
 #include "support/error.hpp"
-#include "support/files.hpp"
 #include "support/json.hpp"
-#include "support/text.hpp"
 
 namespace talus::figures {
 namespace {
@@ -14,7 +10,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t max_json_bytes = std::size_t{256} << 20;
-constexpr std::size_t max_csv_bytes = std::size_t{1} << 30;
 
 std::optional<double> number_or_null(const Json& value) {
   return value.is_null() ? std::nullopt : std::optional(value.get<double>());
@@ -61,36 +56,6 @@ StudyFiles read_summary(const Json& study) {
   return files;
 }
 
-/// The rows of realizations.csv that are done.
-std::vector<Done> read_realizations(const fs::path& path) {
-  const std::string text = read_file(path, max_csv_bytes);
-  std::vector<Done> all;
-  CsvRows rows(text);
-  if (!rows.next()) return all;
-  const std::vector<std::string> header = rows.fields();
-  const auto fault = [&](const std::string& what) -> IoError {
-    return IoError(path.string() + ":" + std::to_string(rows.line()) + ": " + what);
-  };
-  const auto field = [&](std::string_view column) -> const std::string& {
-    const auto found = std::ranges::find(header, column);
-    if (found == header.end()) throw fault("there is no column " + std::string(column));
-    return rows.fields()[static_cast<std::size_t>(found - header.begin())];
-  };
-  const auto number = [&](std::string_view column) {
-    const std::optional<double> value = to_number(field(column));
-    if (!value) throw fault("column " + std::string(column) + ": " + in_quotes(field(column)) + " is not a number");
-    return *value;
-  };
-  while (rows.next()) {
-    if (rows.fields().size() != header.size())
-      throw fault(std::to_string(rows.fields().size()) + " fields instead of " + std::to_string(header.size()));
-    if (field("status") != "done") continue;
-    all.push_back(
-        {static_cast<std::int64_t>(number("index")), number("influence_zone_m"), number("mean_friction_angle_deg")});
-  }
-  return all;
-}
-
 }  // namespace
 
 StudyFiles read_study(const fs::path& directory) {
@@ -101,7 +66,8 @@ StudyFiles read_study(const fs::path& directory) {
   } catch (const Json::exception& e) {
     throw IoError(summary.string() + " is not a valid study summary: " + e.what());
   }
-  files.realizations = read_realizations(directory / "realizations.csv");
+  for (const Record& r : read_csv(directory / "realizations.csv", "index"))
+    if (r.done) files.realizations.push_back({r.index, r.measures.influence_zone, r.mean_phi_deg});
   return files;
 }
 

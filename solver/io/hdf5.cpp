@@ -9,7 +9,7 @@
 namespace talus::hdf5 {
 namespace {
 
-constexpr hsize_t max_size = hsize_t{1} << 40;  ///< numbers; an array that claims more is not believed
+constexpr hsize_t max_size = hsize_t{1} << 40;  ///< numbers; the file of an array that claims more is damaged
 constexpr hsize_t max_read = hsize_t{1} << 30;  ///< numbers read at once
 constexpr hsize_t max_chunk = 65'536;           ///< rows compressed together in an array of fixed size
 
@@ -93,7 +93,7 @@ Shape shape_of(hid_t array, hid_t parent, const std::string& name) {
   if (rank < 1 || rank > 2) throw IoError(doing("read", parent, name) + ": it is neither a list nor a table");
   H5Sget_simple_extent_dims(space, dims.data(), nullptr);
   if (dims[1] == 0 || dims[0] > max_size / dims[1])
-    throw IoError(doing("read", parent, name) + ": its size is out of all reason");
+    throw IoError(doing("read", parent, name) + ": its size is implausible");
   return {dims[0], dims[1]};
 }
 
@@ -233,8 +233,8 @@ std::size_t numbers_in_rows(hid_t parent, const std::string& name, std::size_t f
   const auto [rows, components] = shape_of(open_array(parent, name), parent, name);
   if (first > rows || count > rows - first)
     throw IoError(doing("read", parent, name) + ": it has " + std::to_string(rows) + " rows, " +
-                  std::to_string(first + count) + " are wanted");
-  if (count * components > max_read) throw IoError(doing("read", parent, name) + ": its size is out of all reason");
+                  std::to_string(first + count) + " are needed");
+  if (count * components > max_read) throw IoError(doing("read", parent, name) + ": its size is implausible");
   return count * components;
 }
 

@@ -5,7 +5,7 @@
 
 #include "example_frame.hpp"
 #include "figures/profile.hpp"
-#include "figures/script.hpp"
+#include "figures/sheet.hpp"
 #include "reading.hpp"
 #include "support/error.hpp"
 #include "temporary_directory.hpp"
