@@ -16,22 +16,11 @@ struct Vec2 {
     y += b.y;
     return *this;
   }
-  constexpr Vec2& operator-=(Vec2 b) {
-    x -= b.x;
-    y -= b.y;
-    return *this;
-  }
-  constexpr Vec2& operator*=(double s) {
-    x *= s;
-    y *= s;
-    return *this;
-  }
   constexpr bool operator==(const Vec2&) const = default;
 };
 
 constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
 constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
-constexpr Vec2 operator-(Vec2 a) { return {-a.x, -a.y}; }
 constexpr Vec2 operator*(double s, Vec2 a) { return {s * a.x, s * a.y}; }
 constexpr Vec2 operator*(Vec2 a, double s) { return s * a; }
 constexpr double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "particles/walls.hpp"
+#include "particles/geometry.hpp"
 
 namespace talus {
 namespace {

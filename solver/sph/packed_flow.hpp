@@ -1,11 +1,19 @@
 #pragma once
 // Particles as the vectorised pair loops read them: single precision, four values a group so that a neighbour is one or
 // two cache lines, positions as fixed point so that differences of neighbours are exact however large the terrain.
+//
+// Neighbours of clusters: as many particles as a vector has lanes, close to each other, share one list of the particles
+// that may come near any of them (after Pall & Hess 2013). One vector then holds one value of all particles of a
+// cluster, and each particle sums its neighbours in ascending order whatever the width of the vector.
 
+#include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "math/vec2.hpp"
+#include "neighbours/cell_list.hpp"
 #include "particles/geometry_input.hpp"
 
 namespace talus {
@@ -40,17 +48,6 @@ struct PackedSoil {
   std::size_t n_ = 0;
 };
 
-/// The rates that a state can be moved on with; calls f(name, array).
-template <class P, class F>
-void for_each_packed_rate(P& s, F&& f) {
-  f("ax", s.ax);
-  f("ay", s.ay);
-  f("drho", s.drho);
-  f("dtxx", s.dtxx);
-  f("dtyy", s.dtyy);
-  f("dtxy", s.dtxy);
-}
-
 /// WallSlip as PackedWalls keeps it.
 constexpr float slip_code(WallSlip slip) { return static_cast<float>(slip); }
 
@@ -60,6 +57,37 @@ struct PackedWalls {
   std::vector<float> slip;     ///< WallSlip as a number, not grouped
   std::vector<float> tan_phi;  ///< of the wall's friction angle, infinite where it has none [-], not grouped
   void resize(std::size_t n);
+};
+
+/// Cuts places in cell order into clusters of up to `lanes`; no cluster reaches over the end of a row of cells.
+/// @returns first place of each cluster, and one more: the number of places
+std::vector<std::uint32_t> clusters(const CellList& cells, std::size_t lanes);
+
+/// For each cluster the places of the particles to sum over, ascending.
+struct ClusterList {
+  /// Clusters whose lists a thread makes at a time, one after the other in memory.
+  static constexpr std::size_t batch_size = 32;
+  /// Each list is filled up to a multiple of it with a place where nothing is, and so many more stand behind the last.
+  static constexpr std::size_t block = 2;
+
+  struct Batch {
+    std::vector<std::uint32_t> places;
+    std::array<std::uint32_t, batch_size + 1> at;  ///< where each cluster's part of `places` begins
+  };
+  std::vector<Batch> batches;
+
+  /// For the clusters of `first`, as clusters() returns them.
+  void resize(std::span<const std::uint32_t> first) { batches.resize((first.size() + batch_size - 2) / batch_size); }
+};
+
+/// What the vectorised loops read and write.
+struct PackedFlow {
+  FixedPoint fixed;
+  std::optional<double> mass;  ///< of every soil particle, where all have the same [kg/m]
+  PackedSoil soil;
+  PackedWalls walls;
+  std::vector<std::uint32_t> soil_clusters = {0}, wall_clusters = {0};  ///< first place of each, and one more
+  ClusterList soil_soil, soil_wall, wall_soil;                          ///< target_source
 };
 
 }  // namespace talus
