@@ -2,24 +2,23 @@
 
 #include <algorithm>
 #include <boost/geometry.hpp>
-#include <boost/geometry/geometries/linestring.hpp>
 #include <boost/geometry/geometries/multi_polygon.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
-#include <cmath>
+#include <boost/geometry/geometries/register/point.hpp>
 #include <numeric>
+
+BOOST_GEOMETRY_REGISTER_POINT_2D(talus::Vec2, double, boost::geometry::cs::cartesian, x, y)
 
 namespace talus {
 namespace {
 
 namespace bg = boost::geometry;
-using Point = bg::model::d2::point_xy<double>;
-using Polygon = bg::model::polygon<Point>;
+using Polygon = bg::model::polygon<Vec2, false, false>;  // counter-clockwise, first vertex not repeated
 using Polygons = bg::model::multi_polygon<Polygon>;
 
 Polygon to_polygon(std::span<const Vec2> outline) {
   Polygon polygon;
-  for (const Vec2& v : outline) bg::append(polygon.outer(), Point(v.x, v.y));
+  polygon.outer().assign(outline.begin(), outline.end());
   bg::correct(polygon);
   return polygon;
 }
@@ -43,7 +42,7 @@ bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
          (b_side == 0 && between(c, d, b));
 }
 
-/// The region under (sign -1) or over (sign +1) a left-to-right surface, bounded by y = `far`.
+/// The region between a left-to-right surface and the level y = `far` below or above it.
 Polygon half_plane(std::span<const Vec2> surface, double far) {
   std::vector<Vec2> ring(surface.begin(), surface.end());
   ring.push_back({surface.back().x, far});
@@ -51,12 +50,9 @@ Polygon half_plane(std::span<const Vec2> surface, double far) {
   return to_polygon(ring);
 }
 
-/// Vertices of a ring, counter-clockwise from the leftmost (then lowest) one.
+/// The vertices of a polygon from the leftmost (then lowest) one.
 std::vector<Vec2> normal_form(const Polygon& polygon) {
-  std::vector<Vec2> ring;
-  for (const Point& p : polygon.outer()) ring.push_back({p.x(), p.y()});
-  if (ring.size() > 1 && ring.front() == ring.back()) ring.pop_back();
-  if (signed_area(ring) < 0.0) std::reverse(ring.begin(), ring.end());
+  std::vector<Vec2> ring(polygon.outer());
   const auto first =
       std::min_element(ring.begin(), ring.end(), [](Vec2 a, Vec2 b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
   std::rotate(ring.begin(), first, ring.end());
@@ -143,16 +139,14 @@ Penetration depth_below_bed(std::span<const Vec2> outline, std::span<const Vec2>
 
 Penetration reach_outside_ring(std::span<const Vec2> outline, std::span<const Vec2> ring) {
   const Polygon inside = to_polygon(ring);
-  bg::model::linestring<Point> edge(inside.outer().begin(), inside.outer().end());
   Polygons outside;
   bg::difference(to_polygon(outline), inside, outside);
   Penetration worst;
   for (const Polygon& piece : outside) {
     // Rock that stands up into the outline has all its vertices on the ring: its thickness, 2 area / perimeter, counts.
     const double thickness = 2.0 * bg::area(piece) / bg::perimeter(piece);
-    for (const Point& p : piece.outer())
-      if (const double depth = std::max(thickness, bg::distance(p, edge)); depth > worst.depth)
-        worst = {{p.x(), p.y()}, depth};
+    for (const Vec2& p : piece.outer())
+      if (const double depth = std::max(thickness, bg::distance(p, inside)); depth > worst.depth) worst = {p, depth};
   }
   return worst;
 }

@@ -1,7 +1,6 @@
 // The keys of terrain and slide: polylines, their shape, and the outlines between ground and slip surface.
 
 #include <algorithm>
-#include <cmath>
 
 #include "case/outline.hpp"
 #include "case/sections.hpp"

@@ -1,7 +1,5 @@
 // The keys of random_field and study. Defaults are those of the structs.
 
-#include <cstdint>
-
 #include "case/sections.hpp"
 #include "case/vertices.hpp"
 #include "random_field/random_field.hpp"

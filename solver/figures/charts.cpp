@@ -141,7 +141,9 @@ Sheet friction_angle_sheet(const StudyFiles& study) {
 
 Sheet spread_sheet(const StudyFiles& study) {
   constexpr Panel panel{190, 812, 84, 440};
-  constexpr double measures = static_cast<double>(measure_table.size());
+  // The axis has one unit, that of the first measure.
+  const auto on_axis = [](const Measure& m) { return std::string_view(m.unit) == measure_table[0].unit; };
+  const auto measures = static_cast<double>(std::ranges::count_if(measure_table, on_axis));
   Sheet sheet = chart(study, "Standard deviation from soil variability, compared with the numerical noise", {900, 520});
   const auto legend = [&sheet](double x, const char* colour, const char* name) {
     sheet.text(x, 72, "■", {.colour = colour});
@@ -153,6 +155,7 @@ Sheet spread_sheet(const StudyFiles& study) {
   double widest = 0.0;
   double row = measures + 1.0;
   for (const Measure& measure : measure_table) {
+    if (!on_axis(measure)) continue;
     row -= 1.0;
     const double y = panel.bottom - (row - 0.4) / (measures + 0.2) * panel.height();
     sheet.text(panel.left - 10, y, measure.label, {.align = Align::right});
@@ -171,8 +174,8 @@ Sheet spread_sheet(const StudyFiles& study) {
   }
   if (widest <= 0.0) widest = 1.0;
   sheet.script.data("spread", spread).data("floor", noise);
-  sheet.axes({0, 1.04 * widest, nice_step(widest, 6), "standard deviation over the realizations (m)"},
-             {0.4, measures + 0.6, 0, ""});
+  const std::string label = std::string("standard deviation over the realizations (") + measure_table[0].unit + ")";
+  sheet.axes({0, 1.04 * widest, nice_step(widest, 6), label}, {0.4, measures + 0.6, 0, ""});
   sheet.script("set border 1");
   sheet.place(panel);
   sheet.script.plot(std::array{

@@ -6,7 +6,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "figures/colour.hpp"
 #include "math/vec2.hpp"

@@ -13,14 +13,8 @@ AxisModes axis(double lo, double hi, double ell, bool varies, RootIntervals inte
 
 std::vector<ModePair> truncate(const FieldSpec& spec, AxisModes& x, AxisModes& y) {
   const auto terms = static_cast<std::size_t>(spec.terms);
-  switch (spec.truncation) {
-    case Truncation::diagonal:
-      return diagonal_products(x, y, terms);
-    case Truncation::variance_share:
-      return products_reaching(x, y, spec.variance_share);
-    case Truncation::largest:
-      break;
-  }
+  if (spec.truncation == Truncation::diagonal) return diagonal_products(x, y, terms);
+  if (spec.truncation == Truncation::variance_share) return products_reaching(x, y, spec.variance_share);
   return largest_products(x, y, terms);
 }
 

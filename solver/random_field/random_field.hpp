@@ -17,7 +17,7 @@ namespace talus {
 /// embedding).
 class RandomField {
  public:
-  /// @param spec       what is asked for; `spec.domain` overrides `slide_box`
+  /// @param spec       what is asked for, within the ranges of its members; `spec.domain` overrides `slide_box`
   /// @param slide_box  bounding box of the slide [m]
   /// @param dx      particle spacing [m], for `cell_average` and the default grid
   /// @throws ConfigError (pointer under /random_field) when the domain has no extent or the embedding is impossible
