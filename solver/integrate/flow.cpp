@@ -2,7 +2,7 @@
 
 #include "integrate/plain_flow.hpp"
 #include "integrate/vectorised_flow.hpp"
-#include "material/equation_of_state-inl.hpp"
+#include "material/constitutive_models-inl.hpp"
 
 namespace talus {
 

@@ -1,5 +1,5 @@
-// Yield stress and the constitutive models that a run can choose, for every number type. Included once for every
-// instruction set.
+// Equation of state, yield stress and the constitutive models that a run can choose, for every number type. Included
+// once for every instruction set.
 
 #if defined(TALUS_MATERIAL_CONSTITUTIVE_MODELS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TALUS_MATERIAL_CONSTITUTIVE_MODELS_INL
@@ -13,11 +13,28 @@
 #include <numbers>
 #include <type_traits>
 
+#include "material/equation_of_state.hpp"
 #include "material/material.hpp"
 #include "math/tensor-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
+
+/// p = B ((1 + q)^7 - 1), q = rho/rho0 - 1                                 [Z20] Eq. 3
+/// Multiplied out, so that nothing cancels near the reference density.
+template <class Real>
+HWY_INLINE Real pressure(Real B, Real q) {
+  static_assert(eos_exponent == 7.0);
+  Real sum = q + Real(7.0);
+  for (const double binomial : {21.0, 35.0, 35.0, 21.0, 7.0}) sum = fma(q, sum, Real(binomial));
+  return B * q * sum;
+}
+
+/// Loose soil carries no tension: negative pressure is cut off.
+template <class Real>
+HWY_INLINE Real apply_tension_cutoff(Real p) {
+  return max(p, Real(0.0));
+}
 
 /// gamma_dot = sqrt(2 dev(e):dev(e)): simple shear v_x(y) gives |dv_x/dy|, as Eq. 5 needs.
 /// ShearRate::paper: sqrt(2/3 dev(e):dev(e)), [Z20] Eq. 7 as printed; the yielded stress comes out sqrt(3) times
@@ -39,7 +56,9 @@ struct PointState {
   Deviator<Real> e;  ///< deviatoric strain rate [1/s]
   Real two_spin;     ///< 2 omega_xy [1/s]
   Real gamma_dot;    ///< shear rate [1/s]
-  Real tau_y;        ///< yield stress [Pa]
+  Real p;            ///< pressure [Pa]
+  Real c;            ///< cohesion [Pa]
+  Real tan_phi;      ///< tangent of the friction angle [-]
   Real eta;          ///< viscosity once it has yielded [Pa s]
   Real two_G;        ///< twice the numerical shear modulus [Pa]
 };
@@ -58,7 +77,8 @@ struct RegularisedBingham {
   /// t = 2 eta' dev(e)                                                     [Z20] Eq. 10, deviator written out
   template <class ElasticStress>
   HWY_INLINE Deviator<Real> stress(const PointState<Real>& at, ElasticStress&&) const {
-    const Real zero(0.0), eta = viscosity(at.eta, at.tau_y, at.gamma_dot);
+    const Real zero(0.0), tau_y = yield_stress(at.c, at.tan_phi, at.p);
+    const Real eta = viscosity(at.eta, tau_y, at.gamma_dot);
     return fma(eta + eta, at.e, Deviator<Real>{zero, zero, zero});
   }
 };
@@ -85,7 +105,7 @@ struct ElastoViscoplastic {
   template <class ElasticStress>
   HWY_INLINE Deviator<Real> stress(const PointState<Real>& at, ElasticStress&& elastic) const {
     Deviator<Real> t = elastic.value();
-    const Real limit = yield_factor * at.tau_y, size = magnitude(t);
+    const Real limit = yield_factor * yield_stress(at.c, at.tan_phi, at.p), size = magnitude(t);
     if (const auto yields = size > limit; any(yields)) {
       const Deviator<Real> change = t * select_or_zero(yields, limit / size - Real(1.0));
       t = t + change;

@@ -20,7 +20,7 @@ struct EquationOfState {
     return {rho0, rho0 * c_s * c_s / eos_exponent};
   }
 
-  /// Density of pressure p > -B [Pa]; the pressure of a density is in equation_of_state-inl.hpp.
+  /// Density of pressure p > -B [Pa]; the pressure of a density is in constitutive_models-inl.hpp.
   double density(double p) const { return rho0 * std::pow(1.0 + p / B, 1.0 / eos_exponent); }
 };
 

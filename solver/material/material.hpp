@@ -19,6 +19,9 @@ struct Material {
 enum class ShearRate { consistent, paper };  ///< sqrt(2 dev:dev) | sqrt(2/3 dev:dev), [Z20] Eq. 7 as printed
 enum class Yield { elastic, regularized };   ///< elasto-viscoplastic | equivalent viscosity, [Z20] Eq. 6
 
+/// Whether the law keeps an elastic stress, whose waves bound the time step.
+constexpr bool keeps_elastic_stress(Yield yield) { return yield != Yield::regularized; }
+
 /// The constitutive model and its numerical constants; those of the soil are in Material.
 struct Rheology {
   ShearRate shear_rate = ShearRate::consistent;

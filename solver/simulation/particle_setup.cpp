@@ -66,17 +66,21 @@ FlowConstants flow_constants(const Model& model) {
 StepBounds step_bounds(const Model& model, const FlowConstants& k) {
   StepBounds bounds{model.numerics.cfl, k.h, k.c_s, 0.0};
   for (const ConstitutiveParameters& law : k.soils) {
-    if (model.rheology.yield == Yield::elastic)
+    if (keeps_elastic_stress(model.rheology.yield))
       bounds.c = std::max(bounds.c, std::sqrt(k.c_s * k.c_s + 4.0 / 3.0 * law.G / law.eos.rho0));
     bounds.nu = std::max(bounds.nu, law.eta / law.eos.rho0);
   }
   return bounds;
 }
 
+double time_step(const TimeControl& time, const StepBounds& bounds, double max_speed, double max_acceleration) {
+  if (time.fixed_step) return *time.fixed_step;
+  const double dt = courant_step(bounds, max_speed, max_acceleration);
+  return time.max_step ? std::min(dt, *time.max_step) : dt;
+}
+
 double first_step(const Model& model) {
-  if (model.time.fixed_step) return *model.time.fixed_step;
-  const double dt = courant_step(step_bounds(model, flow_constants(model)), 0.0, norm(model.g));
-  return model.time.max_step ? std::min(dt, *model.time.max_step) : dt;
+  return time_step(model.time, step_bounds(model, flow_constants(model)), 0.0, norm(model.g));
 }
 
 Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& plan, const SoilProperties& properties) {

@@ -37,6 +37,8 @@ FlowConstants flow_constants(const Model& model);
 /// What bounds the time step; the compression wave is that of the stiffest material: sqrt(c_s^2 + 4/3 G/rho0) with the
 /// elastic law, c_s otherwise.
 StepBounds step_bounds(const Model& model, const FlowConstants& k);
+/// Time step at these extrema of speed and acceleration: the fixed one, or Courant's up to the largest allowed [s].
+double time_step(const TimeControl& time, const StepBounds& bounds, double max_speed, double max_acceleration);
 /// First time step of the model [s], to estimate the number of steps.
 double first_step(const Model& model);
 

@@ -58,8 +58,7 @@ void Simulation::step(double until) {
 }
 
 double Simulation::choose_step(double until) const {
-  double dt = model_.time.fixed_step ? *model_.time.fixed_step : courant_step(bounds_, max_speed_, max_acceleration_);
-  if (model_.time.max_step && !model_.time.fixed_step) dt = std::min(dt, *model_.time.max_step);
+  const double dt = time_step(model_.time, bounds_, max_speed_, max_acceleration_);
   // A remainder shorter than a thousandth of a step is added to this one, so that rounding leaves no tiny last step.
   const double remainder = until - time_;
   return remainder < 1.001 * dt ? remainder : dt;

@@ -1,6 +1,5 @@
 #include "sph/flow_constants.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace talus {
@@ -13,10 +12,6 @@ std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Ma
                      .eta = m.eta,
                      .G = rheology.G.value_or(0.1 * m.rho0 * c_s * c_s)});
   return soils;
-}
-
-bool any_friction(const FlowConstants& k) {
-  return std::ranges::any_of(k.boundaries, [](const WallFriction& b) { return b.slip == WallSlip::friction; });
 }
 
 std::vector<WallFriction> wall_friction(std::span<const Boundary> boundaries) {

@@ -43,9 +43,6 @@ struct FlowConstants {
 std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Material>& materials,
                                                             const Rheology& rheology, double c_s);
 
-/// Whether a boundary has a friction angle of its own.
-bool any_friction(const FlowConstants& k);
-
 std::vector<WallFriction> wall_friction(std::span<const Boundary> boundaries);
 
 }  // namespace talus

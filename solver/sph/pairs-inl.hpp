@@ -9,6 +9,7 @@
 
 #include <hwy/highway.h>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -87,7 +88,7 @@ HWY_INLINE WallParticle<Lanes> wall_particle(const PackedWalls& walls, std::size
   const float* HWY_RESTRICT place = walls.place.data() + 4 * j;
   return {{Lanes(place[2]), Lanes(place[3])},
           Lanes(walls.stress[4 * j + 3]),
-          walls.slip[j] == slip_code(WallSlip::free_slip)};
+          std::bit_cast<std::int32_t>(walls.slip[j]) == std::bit_cast<std::int32_t>(slip_code(WallSlip::free_slip))};
 }
 /// The stress of a group of four (sxx, syy, sxy, ...).
 HWY_INLINE Symmetric<Lanes> stress_of(const std::vector<float>& groups, std::size_t j) {

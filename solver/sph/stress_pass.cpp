@@ -9,9 +9,9 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sph/continuity-inl.hpp"
 #include "sph/kernel-inl.hpp"
 #include "sph/pairs-inl.hpp"
-#include "sph/point_update-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
@@ -69,23 +69,13 @@ struct ClusterPoint {
   HWY_INLINE Lanes state(const std::vector<double>& array) const { return narrow(load(array.data() + i, count)); }
 };
 
-/// What a run has chosen: which sums the loop needs, and which kernel and constitutive model.
-template <class Kernel_, class Model_, bool Diffuse, bool OneMaterial, bool ByMass>
-struct StressChoice {
-  using Kernel = Kernel_;
-  using Model = Model_;
-  static constexpr bool diffuse = Diffuse, one_material = OneMaterial, by_mass = ByMass;
-};
-
-template <class Choice>
+template <class Kernel, class Model, bool Diffuse, bool OneMaterial, bool ByMass>
 HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Range clusters) {
-  const double quantum = f.fixed.quantum, sigma = sigma_h2<typename Choice::Kernel>(k.h);
-  const typename Choice::Kernel kernel(quantum / k.h);
-  const typename Choice::Model model(k.rheology);
-  const WallLaw<Lanes> wall(k.walls, quantum);
+  const double quantum = f.fixed.quantum, sigma = sigma_h2<Kernel>(k.h);
+  const Kernel kernel(quantum / k.h);
+  const Model model(k.rheology);
+  const WallLaw<Lanes> wall(k, quantum);
   const Lanes volume_w(k.dx * k.dx), support2(4.0 * k.h * k.h / (quantum * quantum));
-  const bool frictional = any_friction(k);
-  const Lanes thickness(interface_thickness(k.h));
   const Lanes to_L(-sigma * quantum), to_diffusion(2.0 * k.numerics.delta * k.h * k.c_s * sigma);
   const auto minus_F = [&](Lanes r, Lanes r2) HWY_ATTR { return kernel.minus_F(r, r2); };
   for (std::size_t c = clusters.begin; c < clusters.end; ++c) {
@@ -101,10 +91,10 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
       const float* HWY_RESTRICT motion = f.soil.motion.data() + 4 * pair.j;
       const float* HWY_RESTRICT density = f.soil.density.data() + 4 * pair.j;
       const Lanes VF = Lanes(density[0]) * pair.kernel;
-      sums.add(VF, Lanes(density[2]), v - Vector<Lanes>{Lanes(motion[2]), Lanes(motion[3])}, pair.r, Choice::by_mass);
-      if constexpr (Choice::diffuse) {
+      sums.add(VF, Lanes(density[2]), v - Vector<Lanes>{Lanes(motion[2]), Lanes(motion[3])}, pair.r, ByMass);
+      if constexpr (Diffuse) {
         Lanes q_ji = Lanes(density[1]) - q;
-        if constexpr (!Choice::one_material) q_ji = select_or_zero(Lanes(density[3]) == material, q_ji);
+        if constexpr (!OneMaterial) q_ji = select_or_zero(Lanes(density[3]) == material, q_ji);
         sums.diffusion = add_diffusion(sums.diffusion, VF, q_ji);
       }
     };
@@ -112,32 +102,31 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
       const WallPair<Lanes> w = wall.pair(pair.r, v, wall_particle(f.walls, pair.j));
       auto acts = pair.r2 < support2;
       if (wall.only_approaching) acts = acts & (w.v_dot_r < Lanes(0.0));
-      sums.add(select_or_zero(acts, volume_w * pair.kernel), rho, w.v_ij, pair.r, Choice::by_mass);
-      if (frictional) {
+      sums.add(select_or_zero(acts, volume_w * pair.kernel), rho, w.v_ij, pair.r, ByMass);
+      if (wall.frictional) {
         const Lanes of_wall(f.walls.tan_phi[pair.j]);
-        tan_phi = select(acts, interface_tan_phi(tan_phi, of_wall, w.distance, thickness), tan_phi);
+        tan_phi = select(acts, interface_tan_phi(tan_phi, of_wall, w.distance, wall.thickness), tan_phi);
       }
     };
     for_neighbours<true>(x, f.soil.motion.data(), neighbours(f.soil_soil, c), minus_F, add_soil);
     for_neighbours<false>(x, f.walls.place.data(), neighbours(f.soil_wall, c), minus_F, add_wall);
-    update_point(k, model, sums.rates(to_L, to_diffusion, Choice::by_mass, rho), tan_phi, point);
+    update_point(k, model, sums.rates(to_L, to_diffusion, ByMass, rho), tan_phi, point);
   }
 }
 
+/// Every choice that the pair loop would otherwise make for each pair is made once.
 void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Range clusters) {
-  const bool diffuse = k.numerics.density_filter == DensityFilter::delta_sph, one_material = k.soils.size() == 1,
-             by_mass = k.numerics.continuity == Continuity::mass;
   with_kernel<Lanes>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
     with_constitutive_model<Lanes>(k.rheology, [&]<class Model>(std::type_identity<Model>) {
       const auto run = [&]<bool Diffuse, bool OneMaterial>() {
-        if (by_mass)
-          stress_loop<StressChoice<Kernel, Model, Diffuse, OneMaterial, true>>(f, k, soil, ahead, keep, clusters);
+        if (k.numerics.continuity == Continuity::mass)
+          stress_loop<Kernel, Model, Diffuse, OneMaterial, true>(f, k, soil, ahead, keep, clusters);
         else
-          stress_loop<StressChoice<Kernel, Model, Diffuse, OneMaterial, false>>(f, k, soil, ahead, keep, clusters);
+          stress_loop<Kernel, Model, Diffuse, OneMaterial, false>(f, k, soil, ahead, keep, clusters);
       };
-      if (!diffuse)
+      if (k.numerics.density_filter != DensityFilter::delta_sph)
         run.template operator()<false, true>();
-      else if (one_material)
+      else if (k.soils.size() == 1)
         run.template operator()<true, true>();
       else
         run.template operator()<true, false>();

@@ -10,6 +10,8 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+
 #include "math/tensor-inl.hpp"
 #include "sph/flow_constants.hpp"
 
@@ -46,25 +48,6 @@ struct WallPair {
   Real v_dot_r;       ///< [m/s times the unit of the distances]
 };
 
-/// What all walls of a run have in common.
-template <class Real>
-struct WallLaw {
-  Real b_max;  ///< largest mirror ratio [-]
-  Real unit;   ///< of the distances [m]
-  bool only_approaching;
-
-  /// @param metres  unit of the distances [m]
-  HWY_INLINE WallLaw(const Walls& walls, double metres)
-      : b_max(walls.b_max), unit(metres), only_approaching(walls.contact == WallContact::approaching) {}
-
-  HWY_INLINE WallPair<Real> pair(Vector<Real> r_ij, Vector<Real> v_i, const WallParticle<Real>& j) const {
-    const Real distance = fms(unit, dot(r_ij, j.normal), j.depth);
-    const Real b = mirror_ratio(distance, j.depth, b_max);
-    const Vector<Real> v_ij = wall_relative_velocity(v_i, j.normal, b, j.smooth);
-    return {distance, v_ij, dot(v_ij, r_ij)};
-  }
-};
-
 /// A wall that is smoother than the soil is a thin interface layer with the wall's friction angle (after Desai 1984):
 /// soil nearer than `thickness` to the wall line yields at the smaller of both. Where several such walls are near, the
 /// smallest angle counts.
@@ -75,6 +58,32 @@ HWY_INLINE Real interface_tan_phi(Real tan_phi, Real tan_phi_wall, Real d_i, Rea
 /// [m]; wide enough to hold most of what the kernel sees from the wall: one row of particles at h = 1.2 dx, two at 1.5
 /// dx.
 inline double interface_thickness(double h) { return 1.1 * h; }
+
+/// What all walls of a run have in common.
+template <class Real>
+struct WallLaw {
+  Real b_max;  ///< largest mirror ratio [-]
+  Real unit;   ///< of the distances [m]
+  bool only_approaching;
+  bool frictional;  ///< a boundary has a friction angle of its own
+  Real thickness;   ///< of the interface layer [m]
+
+  /// @param metres  unit of the distances [m]
+  HWY_INLINE WallLaw(const FlowConstants& k, double metres)
+      : b_max(k.walls.b_max),
+        unit(metres),
+        only_approaching(k.walls.contact == WallContact::approaching),
+        frictional(
+            std::ranges::any_of(k.boundaries, [](const WallFriction& b) { return b.slip == WallSlip::friction; })),
+        thickness(interface_thickness(k.h)) {}
+
+  HWY_INLINE WallPair<Real> pair(Vector<Real> r_ij, Vector<Real> v_i, const WallParticle<Real>& j) const {
+    const Real distance = fms(unit, dot(r_ij, j.normal), j.depth);
+    const Real b = mirror_ratio(distance, j.depth, b_max);
+    const Vector<Real> v_ij = wall_relative_velocity(v_i, j.normal, b, j.smooth);
+    return {distance, v_ij, dot(v_ij, r_ij)};
+  }
+};
 
 /// The most that the deviatoric stress may grow on its way to a wall particle [-].
 inline constexpr double max_deviator_growth = 3.0;

@@ -20,7 +20,14 @@ Deviator<double> stress(const PointState<double>& at) {
 /// Stress of simple shear at `rate`.
 Deviator<double> shear_stress(ShearRate norm, double eta, double tau_y, double rate) {
   const auto e = simple_shear(rate);
-  return stress({.e = e, .two_spin = rate, .gamma_dot = shear_rate(e, norm), .tau_y = tau_y, .eta = eta, .two_G = 0});
+  return stress({.e = e,
+                 .two_spin = rate,
+                 .gamma_dot = shear_rate(e, norm),
+                 .p = 0,
+                 .c = tau_y,
+                 .tan_phi = 0,
+                 .eta = eta,
+                 .two_G = 0});
 }
 
 TEST(Bingham, SimpleShearGivesEq5WithTheConsistentNorm) {

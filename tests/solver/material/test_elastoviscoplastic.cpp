@@ -21,7 +21,7 @@ struct ElasticStress {
 /// Stress of soil with tau_y, at rest.
 Deviator<double> at_rest(ElasticStress& elastic, double tau_y, ShearRate norm = ShearRate::consistent) {
   const PointState<double> state{
-      .e = {0, 0, 0}, .two_spin = 0, .gamma_dot = 0, .tau_y = tau_y, .eta = 50, .two_G = 2e6};
+      .e = {0, 0, 0}, .two_spin = 0, .gamma_dot = 0, .p = 0, .c = tau_y, .tan_phi = 0, .eta = 50, .two_G = 2e6};
   Rheology rheology;
   rheology.shear_rate = norm;
   return ElastoViscoplastic<double>(rheology).stress(state, elastic);
@@ -67,8 +67,14 @@ TEST(Elastoviscoplastic, ReturnScalesOntoTheYieldSurfaceOnly) {
 
 TEST(Elastoviscoplastic, ViscosityAddsToTheElasticStress) {
   ElasticStress elastic{{10, -4, 3}};
-  const PointState<double> state{
-      .e = {0.5, -0.2, 0.7}, .two_spin = 0, .gamma_dot = 1, .tau_y = 1e3, .eta = 50, .two_G = 2e6};
+  const PointState<double> state{.e = {0.5, -0.2, 0.7},
+                                 .two_spin = 0,
+                                 .gamma_dot = 1,
+                                 .p = 2e3,
+                                 .c = 400,
+                                 .tan_phi = 0.3,
+                                 .eta = 50,
+                                 .two_G = 2e6};
   const auto t = ElastoViscoplastic<double>(Rheology{}).stress(state, elastic);
   EXPECT_NEAR(t.xx, 10 + 2 * 50 * 0.5, 1e-12);
   EXPECT_NEAR(t.yy, -4 - 2 * 50 * 0.2, 1e-12);

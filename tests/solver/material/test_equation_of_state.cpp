@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "material/equation_of_state-inl.hpp"
+#include "material/constitutive_models-inl.hpp"
 
 namespace talus {
 namespace {

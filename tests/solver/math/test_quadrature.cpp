@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "math/quadrature.hpp"
+#include "quadrature.hpp"
 
 namespace talus {
 namespace {

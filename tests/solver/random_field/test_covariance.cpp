@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "math/quadrature.hpp"
+#include "quadrature.hpp"
 #include "random_field/circulant_embedding.hpp"
 
 namespace talus {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "math/quadrature.hpp"
+#include "quadrature.hpp"
 #include "random_field/modes.hpp"
 
 namespace talus {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "linear_sampler.hpp"
-#include "math/quadrature.hpp"
+#include "quadrature.hpp"
 #include "random_field/karhunen_loeve.hpp"
 #include "random_field/random_field.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "math/quadrature.hpp"
+#include "quadrature.hpp"
 #include "random_field/random_field.hpp"
 
 namespace talus {
