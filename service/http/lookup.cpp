@@ -162,6 +162,11 @@ Json link(const Exchange& exchange, const std::string& path, const std::string& 
   return {{"href", exchange.base + path}, {"rel", rel}, {"type", type}, {"title", title}};
 }
 
+Json next_link(const Exchange& exchange, const std::string& name, std::int64_t value) {
+  const Incoming& request = exchange.request;
+  return link(exchange, request.path + query_text(request, {{name, std::to_string(value)}}), "next", "The next page");
+}
+
 Json status_info(const Job& job, const Exchange& exchange) {
   Json info = {{"jobID", job.id},
                {"processID", job.process},

@@ -97,10 +97,7 @@ Answer list_realizations(Exchange& exchange) {
   if (more) runs.resize(static_cast<std::size_t>(limit));
   Json all = Json::array(), links = Json::array();
   for (const Run& run : runs) all.push_back(brief(run, exchange, job));
-  if (more) {
-    const std::string next = query_text(request, {{"after", std::to_string(runs.back().key.index)}});
-    links.push_back(link(exchange, "/jobs/" + job.id + "/realizations" + next, "next", "The next realizations"));
-  }
+  if (more) links.push_back(next_link(exchange, "after", runs.back().key.index));
   return json_answer({{"realizations", all}, {"links", links}});
 }
 
