@@ -1,7 +1,6 @@
 #include "http/lookup.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 
 #include "base/digest.hpp"
@@ -89,9 +88,8 @@ std::optional<std::int64_t> whole_number(const Incoming& request, const std::str
                                          std::int64_t most) {
   const auto text = request.parameter(name);
   if (!text) return std::nullopt;
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
-  if (error != std::errc() || end != text->data() + text->size() || value < least || value > most)
+  const std::optional<std::int64_t> value = to_whole(*text);
+  if (!value || *value < least || *value > most)
     bad_parameter(name, "must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
   return value;
 }

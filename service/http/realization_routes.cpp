@@ -1,7 +1,6 @@
 // Extensions of a job that is a study: its current histogram, its realizations, retry and extend.
 
 #include <algorithm>
-#include <charconv>
 
 #include "http/lookup.hpp"
 #include "http/text.hpp"
@@ -102,12 +101,8 @@ Answer list_realizations(Exchange& exchange) {
 }
 
 Run run_of(const Exchange& exchange, const Job& job) {
-  const std::string& text = exchange.captured.at(1);
-  std::int64_t index = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-  std::optional<Run> run;
-  if (error == std::errc() && end == text.data() + text.size() && index >= 0)
-    run = exchange.service.store.run(job.number, realization(index));
+  const std::int64_t index = to_whole(exchange.captured.at(1)).value_or(-1);
+  const std::optional<Run> run = exchange.service.store.run(job.number, realization(index));
   if (!run) throw Refusal(reason::not_found, "the study has no such realization");
   return *run;
 }
