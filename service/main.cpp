@@ -52,11 +52,6 @@ FileDescriptor wait_for_lock(const std::filesystem::path& path, bool inherited, 
   }
 }
 
-std::string url_of(const Config& config) {
-  const bool v6 = config.address.find(':') != std::string::npos;
-  return "http://" + (v6 ? "[" + config.address + "]" : config.address) + ":" + std::to_string(config.port);
-}
-
 int serve(Config config) {
   const sigset_t stop_signals = hold_stop_signals();
   raise_file_limit();
@@ -83,19 +78,21 @@ int serve(Config config) {
   for (const Routes& group :
        {discovery_routes(), job_routes(), realization_routes(), event_routes(), operation_routes(), umbridge_routes()})
     routes.insert(routes.end(), group.begin(), group.end());
-  Server server(config, !tokens.wanted() && config.public_url.empty(),
-                [&](Incoming request) { return answer(std::move(request), routes, service, tokens); });
-  config.port = server.bind(config.address, config.port);
+  const auto server = make_server(config, !tokens.wanted() && config.public_url.empty(), [&](Incoming request) {
+    return answer(std::move(request), routes, service, tokens);
+  });
+  config.port = server->bind(config.address, config.port);
   if (config.port == 0)
     throw IoError("cannot listen on " + config.address +
                   ": the port is in use, or the address does not belong to this host");
   scheduler.start();
-  std::thread http([&] { server.serve(); });
-  std::cout << "talusd " << TALUS_VERSION << " listens on " << url_of(config) << std::endl;
-  log_info("started", {{"url", url_of(config)},
-                       {"data", data.root.string()},
-                       {"workers", config.workers},
-                       {"threads", config.threads}});
+  std::thread http([&] { server->serve(); });
+  const bool is_v6 = config.address.find(':') != std::string::npos;
+  const std::string url =
+      "http://" + (is_v6 ? "[" + config.address + "]" : config.address) + ":" + std::to_string(config.port);
+  std::cout << "talusd " << TALUS_VERSION << " listens on " << url << std::endl;
+  log_info("started",
+           {{"url", url}, {"data", data.root.string()}, {"workers", config.workers}, {"threads", config.threads}});
 
   int number = 0;
   sigwait(&stop_signals, &number);
@@ -104,7 +101,7 @@ int serve(Config config) {
   jobs.stop();
   scheduler.changes().notify();
   scheduler.drain();
-  server.stop();
+  server->stop();
   http.join();
   log_info("stopped");
   return static_cast<int>(Exit::ok);

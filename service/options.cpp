@@ -22,13 +22,6 @@ void split_listen(const std::string& text, Config& config) {
   config.port = std::stoi(port);
 }
 
-/// talus beside talusd, if it is there.
-fs::path default_program() {
-  std::error_code error;
-  const fs::path own = fs::read_symlink("/proc/self/exe", error);
-  return own.parent_path() / "talus";
-}
-
 /// Whether only this machine can reach an address.
 bool is_loopback(const std::string& address) {
   return address == "localhost" || address == "::1" || address.starts_with("127.");
@@ -72,7 +65,8 @@ void complete(Config& config, const RawOptions& raw) {
 Options read_options(int argc, char** argv) {
   Options options;
   Config& config = options.config;
-  config.program = default_program();
+  std::error_code ignored;
+  config.program = fs::read_symlink("/proc/self/exe", ignored).parent_path() / "talus";  // beside talusd
   RawOptions raw;
 
   CLI::App app{"talusd: Talus as a service", "talusd"};

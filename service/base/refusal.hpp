@@ -31,7 +31,6 @@ inline constexpr Reason result_not_ready{
     404, "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/result-not-ready", "The result is not ready"};
 inline constexpr Reason job_dismissed{410, "urn:talus:problem:job-dismissed", "The job was dismissed"};
 inline constexpr Reason method_not_allowed{405, "urn:talus:problem:method-not-allowed", "Method not allowed"};
-inline constexpr Reason not_acceptable{406, "urn:talus:problem:not-acceptable", "No acceptable representation"};
 inline constexpr Reason conflict{409, "urn:talus:problem:conflict", "Conflict with the current state"};
 inline constexpr Reason length_required{411, "urn:talus:problem:length-required", "Content-Length is required"};
 inline constexpr Reason too_large{413, "urn:talus:problem:too-large", "Too large"};
@@ -43,19 +42,13 @@ inline constexpr Reason quota{422, "urn:talus:problem:quota-exceeded", "Quota ex
 inline constexpr Reason queue_full{429, "urn:talus:problem:queue-full", "The queue is full"};
 inline constexpr Reason headers_too_large{431, "urn:talus:problem:headers-too-large", "The headers are too large"};
 inline constexpr Reason internal{500, "urn:talus:problem:internal", "Internal error"};
-inline constexpr Reason not_implemented{501, "urn:talus:problem:not-implemented", "Not implemented"};
 inline constexpr Reason unavailable{503, "urn:talus:problem:unavailable", "Temporarily unavailable"};
 inline constexpr Reason timeout{504, "urn:talus:problem:timeout", "Time limit exceeded"};
 inline constexpr Reason disk_full{507, "urn:talus:problem:disk-full", "Insufficient storage"};
-
-inline constexpr const Reason* all[] = {&bad_request,       &unauthorized,    &forbidden,
-                                        &not_found,         &no_such_process, &no_such_job,
-                                        &result_not_ready,  &job_dismissed,   &method_not_allowed,
-                                        &not_acceptable,    &conflict,        &length_required,
-                                        &too_large,         &uri_too_long,    &unsupported_media_type,
-                                        &unprocessable,     &quota,           &queue_full,
-                                        &headers_too_large, &internal,        &not_implemented,
-                                        &unavailable,       &timeout,         &disk_full};
+// Of the guard.
+inline constexpr Reason request_timeout{408, "about:blank", "Request timeout"};
+inline constexpr Reason expectation_failed{417, "about:blank", "Expectation failed"};
+inline constexpr Reason version_not_supported{505, "about:blank", "HTTP version not supported"};
 }  // namespace reason
 
 struct Refusal : std::runtime_error {

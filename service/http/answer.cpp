@@ -1,11 +1,14 @@
 // From a request to its answer: token, route, handler, problem, ETag, log line.
 
+#include <cerrno>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 
 #include "base/digest.hpp"
 #include "http/service.hpp"
 #include "http/text.hpp"
+#include "support/files.hpp"
 
 namespace talus::service {
 namespace {
@@ -76,6 +79,12 @@ std::string request_id(const Incoming& request) {
   return is_identifier(given, "-_.") ? given : random_hex(8);
 }
 
+Answer file_problem(int error, const char* what, const std::string& accept) {
+  log_error("files", {{"why", what}});
+  if (error == ENOSPC || error == EDQUOT) return problem(Refusal(reason::disk_full, "the disk is full"), accept);
+  return problem(Refusal(reason::unavailable, "the service cannot read or write one of its files"), accept);
+}
+
 }  // namespace
 
 FoundRoute find_route(const Routes& routes, const std::string& method, const std::string& path) {
@@ -125,6 +134,37 @@ Answer answer(Incoming request, const Routes& routes, Service& service, const To
                          {"status", answer.status},
                          {"ms", std::round(1000.0 * duration.count()) / 1000.0}});
   return answer;
+}
+
+Answer problem(const Refusal& refusal, const std::string& accept) {
+  const Reason& reason = refusal.reason;
+  Json body = {{"type", reason.type}, {"title", reason.title}, {"status", reason.status}, {"detail", refusal.what()}};
+  for (const Fault& fault : refusal.faults)
+    body["errors"].push_back({{"pointer", fault.pointer}, {"message", fault.message}});
+  Answer answer = json_answer(body, reason.status);
+  if (accept.find("application/problem+json") != std::string::npos) answer.type = "application/problem+json";
+  if (!refusal.allow.empty()) answer.headers.emplace_back("Allow", refusal.allow);
+  if (reason == reason::unauthorized) answer.headers.emplace_back("WWW-Authenticate", "Bearer");
+  if (refusal.retry_after) answer.headers.emplace_back("Retry-After", std::to_string(*refusal.retry_after));
+  return answer;
+}
+
+Answer problem(std::exception_ptr thrown, const std::string& accept) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Refusal& e) {
+    return problem(e, accept);
+  } catch (const StorageError& e) {
+    log_error("storage", {{"why", e.what()}});
+    return problem(Refusal(e.disk_full ? reason::disk_full : reason::unavailable, e.what(), {}, 30), accept);
+  } catch (const IoError& e) {
+    return file_problem(e.error, e.what(), accept);
+  } catch (const std::filesystem::filesystem_error& e) {
+    return file_problem(e.code().value(), e.what(), accept);
+  } catch (const std::exception& e) {
+    log_error("internal", {{"why", e.what()}});
+    return problem(Refusal(reason::internal, "internal error; details are in the log of talusd"), accept);
+  }
 }
 
 }  // namespace talus::service

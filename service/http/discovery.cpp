@@ -1,5 +1,6 @@
 // Landing page, conformance classes, processes, OpenAPI.
 
+#include "base/documents.hpp"
 #include "http/lookup.hpp"
 #include "http/service.hpp"
 
@@ -32,18 +33,17 @@ Json links_of(const Exchange& exchange, const std::string& name) {
           link(exchange, path + "/execution", "http://www.opengis.net/def/rel/ogc/1.0/execute", "Execution endpoint")};
 }
 
-Json processes(const Exchange& exchange) {
+Json list_processes(const Exchange& exchange) {
   const Incoming& request = exchange.request;
   const std::int64_t limit = whole_number(request, "limit", 1, 10'000).value_or(10);
   const std::int64_t first = whole_number(request, "offset", 0, 10'000).value_or(0);
   Json list = Json::array(),
        links = Json::array({link(exchange, "/processes" + query_text(request), "self", "Processes")});
   std::int64_t i = 0;
-  for (const auto& [name, text] : process_texts()) {
+  for (const auto& [name, text] : processes()) {
     if (i++ < first) continue;
     if (i > first + limit) {
-      const std::string next = query_text(request, {{"offset", std::to_string(first + limit)}});
-      links.push_back(link(exchange, "/processes" + next, "next", "The next processes"));
+      links.push_back(next_link(exchange, "offset", first + limit));
       break;
     }
     Json summary = Json::parse(text);
@@ -55,8 +55,8 @@ Json processes(const Exchange& exchange) {
   return {{"processes", list}, {"links", links}};
 }
 
-Json process(const Exchange& exchange) {
-  for (const auto& [name, text] : process_texts()) {
+Json describe_process(const Exchange& exchange) {
+  for (const auto& [name, text] : processes()) {
     if (name != exchange.captured[0]) continue;
     Json description = Json::parse(text);
     description["links"] = links_of(exchange, name);
@@ -70,9 +70,10 @@ Json process(const Exchange& exchange) {
 Routes discovery_routes() {
   return {{"GET", "/", Role::read, [](Exchange& e) { return json_answer(landing(e)); }},
           {"GET", "/conformance", Role::read, [](Exchange&) { return json_answer(conformance()); }},
-          {"GET", "/processes", Role::read, [](Exchange& e) { return json_answer(processes(e)); }},
-          {"GET", "/processes/{}", Role::read, [](Exchange& e) { return json_answer(process(e)); }},
-          {"GET", "/api", Role::read, [](Exchange&) { return Answer{.type = openapi_type, .body = openapi_text()}; }}};
+          {"GET", "/processes", Role::read, [](Exchange& e) { return json_answer(list_processes(e)); }},
+          {"GET", "/processes/{}", Role::read, [](Exchange& e) { return json_answer(describe_process(e)); }},
+          {"GET", "/api", Role::read,
+           [](Exchange&) { return Answer{.type = openapi_type, .body = schemas().front().second}; }}};
 }
 
 }  // namespace talus::service

@@ -1,9 +1,9 @@
 // /jobs/{id}/events: a stream of status infos (server-sent events), or, with ?wait=, one long poll.
 
-#include <charconv>
 #include <thread>
 
 #include "http/lookup.hpp"
+#include "http/text.hpp"
 
 namespace talus::service {
 namespace {
@@ -58,9 +58,7 @@ Answer events(Exchange& exchange) {
   job_of(exchange);
   if (const auto seconds = whole_number(exchange.request, "wait", 0, longest_wait))
     return long_poll(exchange, *seconds);
-  std::int64_t seen = 0;
-  const std::string last = exchange.request.header("last-event-id");
-  std::from_chars(last.data(), last.data() + last.size(), seen);
+  const std::int64_t seen = to_whole(exchange.request.header("last-event-id")).value_or(0);
   const auto waiting = std::make_shared<WaitingRequest>(exchange.service, poll_instead);
   Answer answer{.type = event_stream};
   if (exchange.request.method != "HEAD")

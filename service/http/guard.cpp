@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <vector>
 
 #include "http/text.hpp"
 
@@ -59,9 +60,10 @@ bool is_loopback_name(std::string_view host) {
 }
 
 void check_host(std::string_view host, const GuardLimits& limits) {
-  if (!consists_of_letters_digits(host, ".-:[]_")) throw BadRequest{400, "the Host header is not a valid host name"};
+  if (!consists_of_letters_digits(host, ".-:[]_"))
+    throw Refusal(reason::bad_request, "the Host header is not a valid host name");
   if (limits.loopback_names_only && !host.empty() && !is_loopback_name(host))
-    throw BadRequest{403, "without --tokens only requests to localhost, 127.0.0.1 and [::1] are accepted"};
+    throw Refusal(reason::forbidden, "without --tokens only requests to localhost, 127.0.0.1 and [::1] are accepted");
 }
 
 struct Line {
@@ -77,12 +79,12 @@ std::vector<Line> read_headers(std::string_view text, const GuardLimits& limits)
     text.remove_prefix(end + 2);
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos || !is_token(line.substr(0, colon)))
-      throw BadRequest{400, "a header line is not \"name: value\""};
+      throw Refusal(reason::bad_request, "a header line is not \"name: value\"");
     const std::string_view value = trimmed(line.substr(colon + 1));
-    if (!is_value(value)) throw BadRequest{400, "a header value contains control characters"};
+    if (!is_value(value)) throw Refusal(reason::bad_request, "a header value contains control characters");
     lines.push_back({lower(line.substr(0, colon)), value});
     if (lines.size() > limits.headers)
-      throw BadRequest{431, "more than " + std::to_string(limits.headers) + " headers"};
+      throw Refusal(reason::headers_too_large, "more than " + std::to_string(limits.headers) + " headers");
   }
   return lines;
 }
@@ -96,22 +98,24 @@ std::optional<std::size_t> head_end(std::string_view bytes) {
 
 Head judge(std::string_view head, const GuardLimits& limits) {
   if (head.size() > limits.head_bytes)
-    throw BadRequest{431, "the request header is longer than " + std::to_string(limits.head_bytes) + " bytes"};
-  if (head.find('\0') != std::string_view::npos) throw BadRequest{400, "the request header contains a NUL byte"};
+    throw Refusal(reason::headers_too_large,
+                  "the request header is longer than " + std::to_string(limits.head_bytes) + " bytes");
+  if (head.find('\0') != std::string_view::npos)
+    throw Refusal(reason::bad_request, "the request header contains a NUL byte");
   const std::size_t first = head.find("\r\n");
   const std::string_view request = head.substr(0, first);
   const std::size_t a = request.find(' '), b = request.rfind(' ');
   if (a == std::string_view::npos || a == b)
-    throw BadRequest{400, "the request line is not \"METHOD target HTTP/1.1\""};
+    throw Refusal(reason::bad_request, "the request line is not \"METHOD target HTTP/1.1\"");
   const std::string_view method = request.substr(0, a), target = request.substr(a + 1, b - a - 1),
                          protocol = request.substr(b + 1);
-  if (!is_token(method)) throw BadRequest{400, "the method is not a valid token"};
+  if (!is_token(method)) throw Refusal(reason::bad_request, "the method is not a valid token");
   if (protocol != "HTTP/1.1" && protocol != "HTTP/1.0")
-    throw BadRequest{505, "only HTTP/1.1 and HTTP/1.0 are supported"};
+    throw Refusal(reason::version_not_supported, "only HTTP/1.1 and HTTP/1.0 are supported");
   if (target.size() > limits.target_bytes)
-    throw BadRequest{414, "the URI is longer than " + std::to_string(limits.target_bytes) + " bytes"};
+    throw Refusal(reason::uri_too_long, "the URI is longer than " + std::to_string(limits.target_bytes) + " bytes");
   const std::optional<Target> wanted = read_target(method, target);
-  if (!wanted) throw BadRequest{400, "the request target is neither a path nor an http URI"};
+  if (!wanted) throw Refusal(reason::bad_request, "the request target is neither a path nor an http URI");
 
   // Without the empty line at the end.
   std::vector<Line> lines = read_headers(head.substr(first + 2, head.size() - first - 4), limits);
@@ -122,10 +126,11 @@ Head judge(std::string_view head, const GuardLimits& limits) {
     return std::count_if(lines.begin(), lines.end(), [&](const Line& line) { return line.name == name; });
   };
   if (count("transfer-encoding") > 0 && count("content-length") > 0)
-    throw BadRequest{400, "send either Content-Length or Transfer-Encoding, not both"};
-  if (count("transfer-encoding") > 0) throw BadRequest{411, "chunked bodies are not supported; send a Content-Length"};
-  if (count("content-length") > 1) throw BadRequest{400, "Content-Length occurs more than once"};
-  if (count("host") == 0 && good.keep_alive) throw BadRequest{400, "the Host header is missing"};
+    throw Refusal(reason::bad_request, "send either Content-Length or Transfer-Encoding, not both");
+  if (count("transfer-encoding") > 0)
+    throw Refusal(reason::length_required, "chunked bodies are not supported; send a Content-Length");
+  if (count("content-length") > 1) throw Refusal(reason::bad_request, "Content-Length occurs more than once");
+  if (count("host") == 0 && good.keep_alive) throw Refusal(reason::bad_request, "the Host header is missing");
 
   const auto named = std::find_if(lines.begin(), lines.end(), [](const Line& line) { return line.name == "host"; });
   std::string_view host = named == lines.end() ? "" : named->value;
@@ -143,22 +148,25 @@ Head judge(std::string_view head, const GuardLimits& limits) {
     if (line.name == "content-length") {
       const char* end = line.value.data() + line.value.size();
       const auto [stop, error] = std::from_chars(line.value.data(), end, good.body);
-      if (error == std::errc::result_out_of_range) throw BadRequest{413, "the body is too large"};
-      if (error != std::errc() || stop != end) throw BadRequest{400, "Content-Length is not a number"};
+      if (error == std::errc::result_out_of_range) throw Refusal(reason::too_large, "the body is too large");
+      if (error != std::errc() || stop != end) throw Refusal(reason::bad_request, "Content-Length is not a number");
       if (good.body > limits.body_bytes)
-        throw BadRequest{413, "the body is larger than " + std::to_string(limits.body_bytes) + " bytes"};
+        throw Refusal(reason::too_large, "the body is larger than " + std::to_string(limits.body_bytes) + " bytes");
     } else if (line.name == "connection") {
       if (lower(line.value).find("close") != std::string::npos) good.keep_alive = false;
     } else if (line.name == "expect") {
-      if (lower(line.value) != "100-continue") throw BadRequest{417, "the only supported Expect value is 100-continue"};
+      if (lower(line.value) != "100-continue")
+        throw Refusal(reason::expectation_failed, "the only supported Expect value is 100-continue");
       good.expects_continue = true;
     } else if (line.name == "content-type") {
-      if (hides_control(line.value)) throw BadRequest{400, "a header value contains encoded control characters"};
+      if (hides_control(line.value))
+        throw Refusal(reason::bad_request, "a header value contains encoded control characters");
       good.rewritten += std::string(body_type_header) + ": " + std::string(line.value) + "\r\n";
     } else if (std::find(passed_on.begin(), passed_on.end(), line.name) != passed_on.end()) {
       if (count(line.name) > 1 && line.name != "accept" && line.name != "prefer" && line.name != "if-none-match")
-        throw BadRequest{400, line.name + " occurs more than once"};
-      if (hides_control(line.value)) throw BadRequest{400, "a header value contains encoded control characters"};
+        throw Refusal(reason::bad_request, line.name + " occurs more than once");
+      if (hides_control(line.value))
+        throw Refusal(reason::bad_request, "a header value contains encoded control characters");
       good.rewritten += line.name + ": " + std::string(line.value) + "\r\n";
     }
   }
@@ -166,7 +174,7 @@ Head judge(std::string_view head, const GuardLimits& limits) {
     const auto origin =
         std::find_if(lines.begin(), lines.end(), [](const Line& line) { return line.name == "origin"; });
     if (origin->value != "http://" + std::string(host))
-      throw BadRequest{403, "cross-origin requests are rejected unless talusd runs with --tokens"};
+      throw Refusal(reason::forbidden, "cross-origin requests are rejected unless talusd runs with --tokens");
   }
   good.rewritten += "Content-Length: " + std::to_string(good.body) + "\r\n\r\n";
   return good;

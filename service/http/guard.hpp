@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
+
+#include "base/refusal.hpp"
 
 namespace talus::service {
 
@@ -31,20 +31,13 @@ struct Head {
   std::string rewritten = {};  ///< for the library, with the empty line
 };
 
-/// An invalid request, and the status to answer it with. Where the next request begins is unknown, so the connection is
-/// closed.
-struct BadRequest {
-  int status;
-  std::string why;  ///< one line
-};
-
 /// Header that carries the client's Content-Type: the library would act on the real one.
 inline constexpr const char* body_type_header = "X-Body-Type";
 
 /// End of the header (after the empty line); nothing if it is incomplete.
 std::optional<std::size_t> head_end(std::string_view bytes);
 
-/// Checks a complete header. @throws BadRequest
+/// Checks a complete header. @throws Refusal; where the next request begins is then unknown
 Head judge(std::string_view head, const GuardLimits& limits);
 
 }  // namespace talus::service

@@ -176,10 +176,7 @@ Answer list_jobs(Exchange& exchange) {
   Json all = Json::array(),
        links = Json::array({link(exchange, "/jobs" + query_text(exchange.request), "self", "Jobs")});
   for (const Job& job : jobs) all.push_back(status_info(job, exchange));
-  if (more) {
-    const std::string next = query_text(exchange.request, {{"after", std::to_string(jobs.back().number)}});
-    links.push_back(link(exchange, "/jobs" + next, "next", "The next jobs"));
-  }
+  if (more) links.push_back(next_link(exchange, "after", jobs.back().number));
   return json_answer({{"jobs", all}, {"links", links}});
 }
 

@@ -1,7 +1,6 @@
 #include "http/lookup.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 
 #include "base/digest.hpp"
@@ -89,9 +88,8 @@ std::optional<std::int64_t> whole_number(const Incoming& request, const std::str
                                          std::int64_t most) {
   const auto text = request.parameter(name);
   if (!text) return std::nullopt;
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
-  if (error != std::errc() || end != text->data() + text->size() || value < least || value > most)
+  const std::optional<std::int64_t> value = to_whole(*text);
+  if (!value || *value < least || *value > most)
     bad_parameter(name, "must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
   return value;
 }
@@ -160,6 +158,11 @@ Answer changed(const Exchange& exchange, const Job& job, int status) {
 Json link(const Exchange& exchange, const std::string& path, const std::string& rel, const std::string& title,
           const std::string& type) {
   return {{"href", exchange.base + path}, {"rel", rel}, {"type", type}, {"title", title}};
+}
+
+Json next_link(const Exchange& exchange, const std::string& name, std::int64_t value) {
+  const Incoming& request = exchange.request;
+  return link(exchange, request.path + query_text(request, {{name, std::to_string(value)}}), "next", "The next page");
 }
 
 Json status_info(const Job& job, const Exchange& exchange) {

@@ -22,6 +22,9 @@ Json status_info(const Job& job, const Exchange& exchange);
 /// The parameter `limit` of a list: entries of a page, 100 without it, at most 1000. @throws Refusal bad_request
 int page_limit(const Incoming& request);
 
+/// The link to the next page of a list, whose parameter `name` is then `value`.
+Json next_link(const Exchange& exchange, const std::string& name, std::int64_t value);
+
 /// @throws Refusal bad_request, always: what is wrong with a query parameter
 [[noreturn]] void bad_parameter(const std::string& name, const std::string& why);
 

@@ -64,10 +64,4 @@ Answer problem(const Refusal& refusal, const std::string& accept);
 /// The answer to any exception; details are given only where a client can act on them.
 Answer problem(std::exception_ptr thrown, const std::string& accept);
 
-/// The same by status, for errors detected by the guard or the HTTP library.
-/// @param detail  empty: the title of the status
-Answer problem(int status, const std::string& accept, const std::string& detail = {});
-
-const char* status_text(int status);
-
 }  // namespace talus::service

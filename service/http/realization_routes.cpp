@@ -1,7 +1,6 @@
 // Extensions of a job that is a study: its current histogram, its realizations, retry and extend.
 
 #include <algorithm>
-#include <charconv>
 
 #include "http/lookup.hpp"
 #include "http/text.hpp"
@@ -97,20 +96,13 @@ Answer list_realizations(Exchange& exchange) {
   if (more) runs.resize(static_cast<std::size_t>(limit));
   Json all = Json::array(), links = Json::array();
   for (const Run& run : runs) all.push_back(brief(run, exchange, job));
-  if (more) {
-    const std::string next = query_text(request, {{"after", std::to_string(runs.back().key.index)}});
-    links.push_back(link(exchange, "/jobs/" + job.id + "/realizations" + next, "next", "The next realizations"));
-  }
+  if (more) links.push_back(next_link(exchange, "after", runs.back().key.index));
   return json_answer({{"realizations", all}, {"links", links}});
 }
 
 Run run_of(const Exchange& exchange, const Job& job) {
-  const std::string& text = exchange.captured.at(1);
-  std::int64_t index = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
-  std::optional<Run> run;
-  if (error == std::errc() && end == text.data() + text.size() && index >= 0)
-    run = exchange.service.store.run(job.number, realization(index));
+  const std::int64_t index = to_whole(exchange.captured.at(1)).value_or(-1);
+  const std::optional<Run> run = exchange.service.store.run(job.number, realization(index));
   if (!run) throw Refusal(reason::not_found, "the study has no such realization");
   return *run;
 }

@@ -2,16 +2,138 @@
 
 #include <httplib.h>
 #include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
 
 #include <atomic>
+#include <cerrno>
 
 #include "base/clock.hpp"
+#include "http/guard.hpp"
 #include "http/text.hpp"
+#include "support/files.hpp"
 
 namespace talus::service {
 namespace {
 
-constexpr int backlog = 1024;  ///< the library's own is 5
+using std::chrono::milliseconds;
+
+constexpr int backlog = 1024;        ///< the library's own is 5
+constexpr milliseconds glance{250};  ///< between checks for shutdown
+constexpr milliseconds linger{500};
+constexpr milliseconds idle_limit{5000};    ///< between two requests
+constexpr milliseconds write_limit{20000};  ///< for the client to accept the response
+
+const Refusal too_slow(reason::request_timeout, "the request was not received completely in time");
+
+/// A complete, valid request.
+struct WholeRequest {
+  Head head;
+  std::string body;
+};
+
+/// The socket of one client: complete requests in, bytes out, both with a time limit. Used by one thread at a time.
+class Connection {
+ public:
+  /// @param request_limit  from the first byte of a request to its last
+  /// @param stopping  the server is shutting down; looked at every 250 ms
+  Connection(int fd, const GuardLimits& limits, milliseconds request_limit, const std::atomic<bool>& stopping)
+      : fd_(fd), limits_(limits), request_limit_(request_limit), stopping_(stopping) {}
+
+  /// @return nothing where the client has closed the connection or sends nothing any more
+  /// @throws Refusal; where the next request begins is then unknown
+  std::optional<WholeRequest> next() {
+    const Clock::time_point idle = Clock::now() + idle_limit;
+    while (buffer_.empty())
+      if (receive(idle) != Got::bytes) return std::nullopt;
+    while (buffer_.starts_with("\r\n")) buffer_.erase(0, 2);  // RFC 9112 2.2
+
+    const Clock::time_point deadline = Clock::now() + request_limit_;
+    std::optional<std::size_t> end;
+    while (!(end = head_end(buffer_))) {
+      if (buffer_.size() > limits_.head_bytes)
+        throw Refusal(reason::headers_too_large,
+                      "the request header is longer than " + std::to_string(limits_.head_bytes) + " bytes");
+      const Got got = receive(deadline);
+      if (got == Got::end) return std::nullopt;
+      if (got == Got::nothing) throw too_slow;
+    }
+    Head head = judge(std::string_view(buffer_).substr(0, *end), limits_);
+    buffer_.erase(0, *end);
+    if (head.expects_continue && buffer_.size() < head.body && !write("HTTP/1.1 100 Continue\r\n\r\n"))
+      return std::nullopt;
+    while (buffer_.size() < head.body) {
+      const Got got = receive(deadline);
+      if (got == Got::end) return std::nullopt;
+      if (got == Got::nothing) throw too_slow;
+    }
+    WholeRequest request{.head = std::move(head), .body = buffer_.substr(0, head.body)};
+    buffer_.erase(0, request.body.size());
+    return request;
+  }
+
+  /// Writes all bytes. @return false if the client is gone or too slow, or the server is stopping
+  bool write(const char* data, std::size_t size) {
+    const Clock::time_point deadline = Clock::now() + write_limit;
+    while (size > 0) {
+      const ssize_t sent = ::send(fd_.get(), data, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (sent > 0) {
+        data += sent;
+        size -= static_cast<std::size_t>(sent);
+      } else if (sent < 0 && errno != EAGAIN && errno != EINTR) {
+        return false;
+      } else if (!wait_for(POLLOUT, deadline)) {
+        return false;
+      }
+    }
+    return true;
+  }
+  bool write(const std::string& text) { return write(text.data(), text.size()); }
+
+  /// Closes the sending side and keeps reading for a moment, so that the client receives the last response.
+  void finish() {
+    ::shutdown(fd_.get(), SHUT_WR);
+    const Clock::time_point deadline = Clock::now() + linger;
+    for (std::size_t read = 0; read < (std::size_t{1} << 20); read += buffer_.size()) {
+      buffer_.clear();
+      if (receive(deadline) != Got::bytes) return;
+    }
+  }
+
+  int socket() const { return fd_.get(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  enum class Got { bytes, nothing, end };
+
+  Got receive(Clock::time_point deadline) {
+    if (!wait_for(POLLIN, deadline)) return Got::nothing;
+    char block[16384];
+    const ssize_t got = ::recv(fd_.get(), block, sizeof block, MSG_DONTWAIT);
+    if (got < 0 && (errno == EAGAIN || errno == EINTR)) return Got::bytes;  // none, but come again
+    if (got <= 0) return Got::end;
+    buffer_.append(block, static_cast<std::size_t>(got));
+    return Got::bytes;
+  }
+
+  bool wait_for(short events, Clock::time_point deadline) const {
+    for (;;) {
+      const auto left = duration_cast<milliseconds>(deadline - Clock::now());
+      if (left.count() <= 0) return false;
+      pollfd one{fd_.get(), events, 0};
+      const int ready = ::poll(&one, 1, static_cast<int>(std::min(left, glance).count()));
+      if (ready > 0) return true;
+      if (ready < 0 && errno != EINTR) return false;
+      if (stopping_) return false;
+    }
+  }
+
+  FileDescriptor fd_;
+  const GuardLimits& limits_;
+  milliseconds request_limit_;
+  const std::atomic<bool>& stopping_;
+  std::string buffer_;  ///< received, not yet returned
+};
 
 /// RFC 9110 8.6: no length where there can be no content (204), where it is not that of the content that was not sent
 /// again (304), and where a stream has none. The library writes a head as one piece, and 0 for each of these.
@@ -101,20 +223,18 @@ void fill(httplib::Response& response, Answer answer, bool chunked = true) {
   }
 }
 
-/// A refusal written without the library.
-std::string raw_problem(const BadRequest& bad) {
-  const std::string text = problem(bad.status, "", bad.why).body;
-  return "HTTP/1.1 " + std::to_string(bad.status) + " " + status_text(bad.status) +
+/// The response to a refusal of the guard.
+std::string raw_problem(const Refusal& refusal) {
+  const std::string text = problem(refusal, "").body;
+  return "HTTP/1.1 " + std::to_string(refusal.reason.status) + " " + refusal.reason.title +
          "\r\nDate: " + http_date(system_now()) +
          "\r\nContent-Type: application/json\r\nContent-Length: " + std::to_string(text.size()) +
          "\r\nConnection: close\r\n\r\n" + text;
 }
 
-}  // namespace
-
-class Server::Implementation : public httplib::Server {
+class GuardedServer final : public Server, private httplib::Server {
  public:
-  Implementation(const Config& config, bool loopback_names_only, std::function<Answer(Incoming)> handle)
+  GuardedServer(const Config& config, bool loopback_names_only, std::function<Answer(Incoming)> handle)
       : limits_{.body_bytes = config.body_bytes, .loopback_names_only = loopback_names_only},
         request_limit_(config.request_limit),
         handle_(std::move(handle)) {
@@ -144,25 +264,27 @@ class Server::Implementation : public httplib::Server {
       return HandlerResponse::Handled;
     });
     set_error_handler([](const httplib::Request& request, httplib::Response& response) {
-      if (response.body.empty() && response.status >= 400)
-        fill(response, problem(response.status, request.get_header_value("Accept")));
+      if (!response.body.empty() || response.status < 400) return;
+      Reason reason = response.status < 500 ? reason::bad_request : reason::internal;
+      reason.status = response.status;
+      fill(response, problem(Refusal(reason, reason.title), request.get_header_value("Accept")));
     });
   }
 
-  int open(const std::string& address, int port) {
+  int bind(const std::string& address, int port) override {
     const int bound = port == 0 ? bind_to_any_port(address) : bind_to_port(address, port) ? port : 0;
     if (bound > 0) ::listen(listening_, backlog);
     return bound > 0 ? bound : 0;
   }
-  void run() {
+  void serve() override {
     listen_after_bind();
     ended_ = true;
   }
   /// The library forgets a stop() that comes before it has begun to listen.
-  void end() {
+  void stop() override {
     stopping_ = true;
     while (!is_running() && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    stop();
+    httplib::Server::stop();
   }
 
  private:
@@ -170,7 +292,7 @@ class Server::Implementation : public httplib::Server {
     ::fcntl(fd, F_SETFD, FD_CLOEXEC);
     const int yes = 1;
     ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-    Connection connection(fd, limits_, request_limit_, [this] { return stopping_.load(); });
+    Connection connection(fd, limits_, request_limit_, stopping_);
     try {
       for (bool more = true; more && !stopping_;) {
         const std::optional<WholeRequest> request = connection.next();
@@ -178,9 +300,9 @@ class Server::Implementation : public httplib::Server {
         RequestStream stream(connection, *request);
         more = serve_one(*this, stream, !request->head.keep_alive || stopping_) && request->head.keep_alive;
       }
-    } catch (const BadRequest& bad) {
-      log_info("refused", {{"status", bad.status}, {"why", bad.why}});
-      connection.write(raw_problem(bad));
+    } catch (const Refusal& refusal) {
+      log_info("refused", {{"status", refusal.reason.status}, {"why", refusal.what()}});
+      connection.write(raw_problem(refusal));
     }
     connection.finish();
     return true;
@@ -203,11 +325,11 @@ class Server::Implementation : public httplib::Server {
   std::atomic<bool> stopping_{false}, ended_{false};
 };
 
-Server::Server(const Config& config, bool loopback_names_only, std::function<Answer(Incoming)> handle)
-    : implementation_(std::make_unique<Implementation>(config, loopback_names_only, std::move(handle))) {}
-Server::~Server() = default;
-int Server::bind(const std::string& address, int port) { return implementation_->open(address, port); }
-void Server::serve() { implementation_->run(); }
-void Server::stop() { implementation_->end(); }
+}  // namespace
+
+std::unique_ptr<Server> make_server(const Config& config, bool loopback_names_only,
+                                    std::function<Answer(Incoming)> handle) {
+  return std::make_unique<GuardedServer>(config, loopback_names_only, std::move(handle));
+}
 
 }  // namespace talus::service

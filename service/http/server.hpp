@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "http/connection.hpp"
 #include "http/message.hpp"
 #include "jobs/config.hpp"
 
@@ -13,21 +12,18 @@ namespace talus::service {
 
 class Server {
  public:
-  /// @param loopback_names_only  see GuardLimits
-  /// @param handle  called for every valid request, concurrently from many threads; must not throw
-  Server(const Config& config, bool loopback_names_only, std::function<Answer(Incoming)> handle);
-  ~Server();
-
+  virtual ~Server() = default;
   /// @param port  0: any free one
   /// @return the port; 0 if the address cannot be bound
-  int bind(const std::string& address, int port);
+  virtual int bind(const std::string& address, int port) = 0;
   /// Serves until stop() is called.
-  void serve();
-  void stop();
-
- private:
-  class Implementation;
-  std::unique_ptr<Implementation> implementation_;
+  virtual void serve() = 0;
+  virtual void stop() = 0;
 };
+
+/// @param loopback_names_only  see GuardLimits
+/// @param handle  called for every valid request, concurrently from many threads; must not throw
+std::unique_ptr<Server> make_server(const Config& config, bool loopback_names_only,
+                                    std::function<Answer(Incoming)> handle);
 
 }  // namespace talus::service

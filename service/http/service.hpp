@@ -60,10 +60,6 @@ Routes event_routes();        ///< /jobs/{}/events
 Routes operation_routes();    ///< /healthz, /readyz, /metrics
 Routes umbridge_routes();     ///< /Info, /Evaluate, ...
 
-// Documents compiled into the program.
-const std::string& openapi_text();                                        ///< schemas/openapi.json
-const std::vector<std::pair<std::string, std::string>>& process_texts();  ///< schemas/processes/*.json: name, text
-
 /// All stages of a request: token, route, handler, problem, ETag, log line.
 Answer answer(Incoming request, const Routes& routes, Service& service, const Tokens& tokens);
 

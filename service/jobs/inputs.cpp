@@ -72,7 +72,7 @@ constexpr InputRule echo_rules[] = {
     {"x", [](const Json& v) { return v.is_number() || v.is_boolean() || is_text(v); },
      "must be a string, a number or a boolean"}};
 
-/// Rejects keys that name a file: files beside a case are readable for local users only.
+/// Rejects keys that name a file: over HTTP they would name a file of the server.
 void refuse_files(const Json& value, const std::string& pointer, Faults& faults) {
   if (value.is_object()) {
     for (const auto& [key, member] : value.items()) {

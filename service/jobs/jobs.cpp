@@ -46,6 +46,10 @@ double particles_of(const Json& demand) {
   return particles.at("soil").get<double>() + particles.at("wall").get<double>();
 }
 
+void log_failure(const CommandOutput& output) {
+  log_error("talus_failed", {{"exit_code", output.end.exit_code}, {"signal", output.end.signal}, {"said", output.err}});
+}
+
 /// A case that `talus` rejects or cannot process.
 [[noreturn]] void refuse_case(const CommandOutput& output, const std::string& pointer) {
   std::vector<Fault> faults;
@@ -54,8 +58,7 @@ double particles_of(const Json& demand) {
     for (const Json& fault : said.at("faults"))
       faults.push_back({pointer + fault.at("pointer").get<std::string>(), fault.at("message").get<std::string>()});
   if (output.end.signal || (faults.empty() && output.end.exit_code != Exit::bad_case)) {
-    log_error("talus_failed",
-              {{"exit_code", output.end.exit_code}, {"signal", output.end.signal}, {"said", output.err}});
+    log_failure(output);
     if (output.end.signal || output.err.find("bad_alloc") != std::string::npos)
       throw Refusal(reason::unprocessable, "checking the case takes more memory or time than allowed");
     throw Refusal(reason::internal, "the case could not be checked");
@@ -77,7 +80,7 @@ void prune(const fs::path& directory) {
 /// @throws Refusal internal unless the command succeeded
 void check(const CommandOutput& output, const std::string& what) {
   if (output.ok()) return;
-  log_error("talus_failed", {{"exit_code", output.end.exit_code}, {"signal", output.end.signal}, {"said", output.err}});
+  log_failure(output);
   throw Refusal(reason::internal, what + " could not be made");
 }
 

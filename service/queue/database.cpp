@@ -2,11 +2,10 @@
 
 #include <sqlite3.h>
 
-#include <iterator>
 #include <set>
 #include <string>
 
-#include "queue/schema.hpp"
+#include "base/documents.hpp"
 #include "support/measures.hpp"
 
 namespace talus::service {
@@ -60,13 +59,13 @@ Database::Database(std::filesystem::path path) : path_(std::move(path)), writer_
 }
 
 void Database::migrate() {
-  const int known = static_cast<int>(std::size(migrations));
+  const int known = static_cast<int>(migrations().size());
   write([&](SQLite::Database& db) {
     const int found = db.execAndGet("PRAGMA user_version").getInt();
     if (found > known)
       throw StorageError(path_.string() + " is of version " + std::to_string(found) + ", which is newer than " +
                          std::to_string(known) + "; use the newer talusd");
-    for (int i = found; i < known; ++i) db.exec(migrations[i]);
+    for (auto step = migrations().begin() + found; step != migrations().end(); ++step) db.exec(step->second);
     add_measure_columns(db);
     if (found < known) db.exec("PRAGMA user_version = " + std::to_string(known));
   });

@@ -148,7 +148,7 @@ bool change_job(SQLite::Database& db, std::int64_t job, Milliseconds now, const 
              job, now, values...) == 1;
 }
 
-inline constexpr const char* is_open = "state IN ('accepted', 'running')";
+inline constexpr const char* job_is_open = "state IN ('accepted', 'running')";
 /// Holds for a job none of whose runs waits or is under way. Two terms, since each has its partial index.
 inline constexpr const char* no_open_runs =
     "NOT EXISTS (SELECT 1 FROM runs WHERE job = number AND state = 'queued') AND "

@@ -91,7 +91,7 @@ std::vector<Job> Store::jobs(const JobFilter& filter) {
 std::int64_t Store::open_jobs(const std::optional<std::string>& subject) {
   return db_.read([&](SQLite::Database& db) {
     SQLite::Statement query = statement(
-        db, std::string("SELECT COUNT(*) FROM jobs WHERE (?1 IS NULL OR subject = ?1) AND ") + is_open, subject);
+        db, std::string("SELECT COUNT(*) FROM jobs WHERE (?1 IS NULL OR subject = ?1) AND ") + job_is_open, subject);
     query.executeStep();
     return query.getColumn(0).getInt64();
   });
@@ -124,7 +124,7 @@ StateCounts Store::state_counts() {
 }
 
 void Store::note_pending_reason(std::int64_t job, const std::string& why) {
-  db_.write([&](SQLite::Database& db) { change_job(db, job, clock_(), "message = ?3", is_open, why); });
+  db_.write([&](SQLite::Database& db) { change_job(db, job, clock_(), "message = ?3", job_is_open, why); });
 }
 
 bool Store::start(std::int64_t job) {
@@ -136,7 +136,7 @@ bool Store::start(std::int64_t job) {
 bool Store::finish(std::int64_t job, JobState state, const std::string& message) {
   return db_.write([&](SQLite::Database& db) {
     return change_job(db, job, clock_(), "state = ?3, message = ?4, finished = ?2",
-                      std::string(is_open) + " AND " + no_open_runs, state, message);
+                      std::string(job_is_open) + " AND " + no_open_runs, state, message);
   });
 }
 

@@ -124,7 +124,8 @@ bool Store::give_back(const Claim& claim, bool crashed) {
 std::int64_t Store::requeue_all() {
   return db_.write([&](SQLite::Database& db) {
     const std::int64_t runs = db.exec("UPDATE runs SET state = 'queued' WHERE state = 'leased'");
-    execute(db, std::string("UPDATE jobs SET message = '' WHERE ") + is_open);  // no reason of before holds any more
+    execute(db,
+            std::string("UPDATE jobs SET message = '' WHERE ") + job_is_open);  // no reason of before holds any more
     return runs;
   });
 }
@@ -182,7 +183,7 @@ std::vector<Job> Store::complete_jobs() {
 
 std::vector<Job> Store::open_jobs_without_runs(const std::string& process) {
   return db_.read([&](SQLite::Database& db) {
-    return select_jobs(db, std::string(is_open) + " AND planned = 0 AND process = ?", process);
+    return select_jobs(db, std::string(job_is_open) + " AND planned = 0 AND process = ?", process);
   });
 }
 

@@ -25,7 +25,7 @@ void check_rewritten(const Head& head) {
   if (text.find("\r\nhost: ") == std::string::npos) return;  // HTTP/1.0 may come without, what is handed on is 1.1
   try {
     check(judge(text, {}).body == head.body);
-  } catch (const BadRequest&) {
+  } catch (const Refusal&) {
     check(false);
   }
 }
@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   try {
     check_rewritten(judge(bytes.substr(0, *end), {}));
-  } catch (const BadRequest&) {
+  } catch (const Refusal&) {
   }
   read_body(bytes.substr(*end));
   return 0;

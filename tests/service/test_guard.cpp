@@ -17,9 +17,9 @@ int verdict(const std::string& head, const GuardLimits& by) {
   try {
     judge(head, by);
     return 0;
-  } catch (const BadRequest& bad) {
-    EXPECT_FALSE(bad.why.empty());
-    return bad.status;
+  } catch (const Refusal& refusal) {
+    EXPECT_STRNE(refusal.what(), "");
+    return refusal.reason.status;
   }
 }
 int status(const std::string& line, const std::string& headers = "Host: a\r\n") {
