@@ -7,13 +7,13 @@
 #include "integrate/flow.hpp"
 #include "simulation/checkpoint_state.hpp"
 #include "simulation/frame.hpp"
+#include "simulation/ground_contact.hpp"
 #include "simulation/model.hpp"
 #include "simulation/neighbour_upkeep.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/rest_rule.hpp"
 #include "simulation/run_result.hpp"
 #include "simulation/starting_positions.hpp"
-#include "simulation/wall_crossings.hpp"
 
 namespace talus {
 
@@ -62,6 +62,7 @@ class Simulation {
   void filter_density_if_due();
   void check(const StepExtrema& extrema) const;
   [[noreturn]] void report_divergence() const;
+  void meet_the_ground(StepExtrema& extrema);
   void retire_departed(const StepExtrema& extrema);
 
   Model model_;
@@ -70,7 +71,7 @@ class Simulation {
   std::unique_ptr<Flow> flow_;
   NeighbourUpkeep neighbours_;
   StartingPositions starts_;
-  WallCrossings crossings_;
+  GroundContact contact_;
   RestRule rest_rule_;
   StepBounds bounds_;
   double time_ = 0.0;              ///< [s]
