@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <boost/geometry.hpp>
+#include <boost/geometry/geometries/multi_polygon.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/geometries/polygon.hpp>
 #include <boost/geometry/geometries/segment.hpp>
 #include <boost/geometry/index/rtree.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <utility>
 
@@ -17,6 +20,7 @@ namespace bg = boost::geometry;
 
 constexpr double finest_detail = 0.1;        ///< of the spacing: what a line keeps where its vertices are dense [-]
 constexpr double noise_deviations = 4.0;     ///< one of 16,000 vertices lies farther out
+constexpr double shallowest_notch = 0.25;    ///< of the spacing: what a particle cannot enter deeper is left open [-]
 constexpr std::size_t enough_vertices = 16;  ///< to tell the noise from
 
 Vec2 left_normal(Vec2 along) { return (1.0 / norm(along)) * Vec2{-along.y, along.x}; }
@@ -96,9 +100,96 @@ std::vector<double> least_squares_shift(std::span<const Vec2> path, const std::v
   return shift;
 }
 
-}  // namespace
+using Point = bg::model::d2::point_xy<double>;
+using Polygon = bg::model::polygon<Point, false>;  // counter-clockwise, as the soil walks
+using Region = bg::model::multi_polygon<Polygon>;
 
-FittedLine fit_line(const Polyline& line, double dx) {
+Region grown(const Region& region, double distance) {
+  constexpr std::size_t points_per_circle = 48;
+  Region result;
+  bg::buffer(region, result, bg::strategy::buffer::distance_symmetric<double>(distance),
+             bg::strategy::buffer::side_straight(), bg::strategy::buffer::join_round(points_per_circle),
+             bg::strategy::buffer::end_flat(), bg::strategy::buffer::point_circle(points_per_circle));
+  return result;
+}
+
+/// The largest part of what a disc of radius r that stays within the region covers.
+Polygon opened(const Polygon& region, double r) {
+  const Region open = grown(grown({region}, -r), r);
+  const auto largest = std::ranges::max_element(open, {}, [](const Polygon& part) { return bg::area(part); });
+  return largest == open.end() ? region : *largest;
+}
+
+/// The room above an open line, or inside a ring: the line's vertices first.
+Polygon room_of(const Polyline& line, double margin) {
+  Polygon room;
+  double top = -std::numeric_limits<double>::infinity();
+  for (const Vec2& v : line.vertices) {
+    bg::append(room.outer(), Point(v.x, v.y));
+    top = std::max(top, v.y);
+  }
+  if (!line.closed) {
+    const Vec2 first = line.vertices.front(), last = line.vertices.back();
+    for (const Point& p : {Point(last.x + margin, last.y), Point(last.x + margin, top + margin),
+                           Point(first.x - margin, top + margin), Point(first.x - margin, first.y)})
+      bg::append(room.outer(), p);
+  }
+  bg::correct(room);
+  return room;
+}
+
+/// Vertices of a ring from the one nearest to `first` to the one nearest to `last`.
+std::vector<Vec2> stretch_of(const std::vector<Point>& ring, Vec2 first, Vec2 last) {
+  const std::size_t n = ring.size() - 1;  // the first is repeated at the end
+  const auto vertex = [&](std::size_t k) { return Vec2{ring[k % n].x(), ring[k % n].y()}; };
+  const auto nearest_to = [&](Vec2 p) {
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < n; ++k)
+      if (norm2(vertex(k) - p) < norm2(vertex(best) - p)) best = k;
+    return best;
+  };
+  const std::size_t begin = nearest_to(first), end = nearest_to(last);
+  std::vector<Vec2> path = {first};
+  for (std::size_t k = begin + 1; k % n != end; ++k) path.push_back(vertex(k));
+  path.push_back(last);
+  return path;
+}
+
+/// Whether a disc of radius r on the soil's side comes nearer to vertex k than 1/2 r.
+bool disc_reaches(const Polyline& line, const Ground& ground, std::size_t k, double r) {
+  const Vec2 v = line.vertices[k];
+  const auto free = [&](Vec2 direction) { return ground.nearest(v + 1.5 * r * direction).distance >= 0.9999 * r; };
+  const std::size_t n = line.vertices.size();
+  if (!line.closed && (k == 0 || k + 1 == n)) return true;
+  const Vec2 bisector = left_normal(v - line.vertices[(k + n - 1) % n]) + left_normal(line.vertices[(k + 1) % n] - v);
+  if (norm(bisector) > 0.0 && free((1.0 / norm(bisector)) * bisector)) return true;
+  constexpr int directions = 32;
+  for (int i = 0; i < directions; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / directions;
+    if (free({std::cos(angle), std::sin(angle)})) return true;
+  }
+  return false;
+}
+
+/// Fills notches that are too narrow for a particle: the line that a disc of diameter dx can touch. A line whose
+/// vertices such a disc reaches to 0.25 dx stays as it is.
+Polyline without_narrow_notches(const Polyline& line, double dx) {
+  const double r = 0.5 * dx;
+  const Ground ground({line});
+  bool narrow = false;
+  for (std::size_t k = 0; k < line.vertices.size() && !narrow; ++k) narrow = !disc_reaches(line, ground, k, r);
+  const Polygon room = room_of(line, 8.0 * dx);
+  if (!narrow || !bg::is_valid(room)) return line;
+  const std::vector<Point> ring = opened(room, r).outer();
+  const Vec2 start = line.closed ? Vec2{ring[0].x(), ring[0].y()} : line.vertices.front();
+  const std::vector<Vec2> path = stretch_of(ring, start, line.closed ? start : line.vertices.back());
+  Polyline filled{{}, line.closed};
+  for (const std::size_t k : kept_vertices(path, 0.02 * dx)) filled.vertices.push_back(path[k]);
+  if (line.closed) filled.vertices.pop_back();
+  return filled;
+}
+
+FittedLine without_noise(const Polyline& line, double dx) {
   FittedLine fitted{line};
   bool fine = false;
   for (std::size_t s = 0; s < line.segments(); ++s) fine = fine || norm(line.end(s) - line.start(s)) < dx;
@@ -128,8 +219,14 @@ FittedLine fit_line(const Polyline& line, double dx) {
   return fitted;
 }
 
+}  // namespace
+
+FittedLine fit_line(const Polyline& line, double dx) {
+  FittedLine fitted = without_noise(line, dx);
+  fitted.line = without_narrow_notches(fitted.line, dx);
+  return fitted;
+}
 struct Ground::Segments {
-  using Point = bg::model::d2::point_xy<double>;
   struct Piece {
     std::uint32_t line, segment;
   };
@@ -157,7 +254,7 @@ Ground::Nearest Ground::nearest(Vec2 point) const {
   Nearest found;
   double best = std::numeric_limits<double>::infinity();
   Vec2 normal;
-  const auto query = bg::index::nearest(Segments::Point(point.x, point.y), candidates);
+  const auto query = bg::index::nearest(Point(point.x, point.y), candidates);
   for (auto entry = segments_->tree.qbegin(query); entry != segments_->tree.qend(); ++entry) {
     const auto [l, s] = entry->second;
     const Polyline& line = segments_->lines[l];

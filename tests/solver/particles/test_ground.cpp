@@ -105,6 +105,26 @@ TEST(FitLine, TheFaceOfACliffInASurveyStaysWhereItIs) {
   EXPECT_NEAR(ground.nearest({30.0, 0.5}).distance, 0.5, 0.1);
 }
 
+TEST(FitLine, ANotchTooNarrowForAParticleIsFilled) {
+  const double dx = 0.5;
+  const Polyline bed{{{0, 20}, {8, 20}, {8.4, 16.5}, {8.8, 20}, {20, 20}, {30, 10}, {30.2, 3}, {30.4, 10}, {50, 10}},
+                     false};
+  const Polyline fitted = fit_line(bed, dx).line;
+  EXPECT_EQ(fitted.vertices.front(), bed.vertices.front());
+  EXPECT_EQ(fitted.vertices.back(), bed.vertices.back());
+  const Ground ground({fitted});
+  // A disc of diameter dx touches both sides of the first notch where it is about dx wide; of the second only the
+  // edges.
+  EXPECT_GT(ground.nearest({8.4, 20.0}).distance, 0.0);
+  EXPECT_LT(ground.nearest({8.4, 17.5}).distance, -0.5);
+  EXPECT_LT(ground.nearest({30.2, 9.0}).distance, -0.5);
+  for (const Vec2 v : {Vec2{4, 20}, Vec2{15, 20}, Vec2{25, 15}, Vec2{40, 10}})
+    EXPECT_NEAR(ground.nearest(v).distance, 0, 0.01);
+  // A valley of 100 degrees and the corner of a box stay as they are, vertex by vertex.
+  const Polyline box{{{0, 30}, {0, 20}, {10, 20}, {18, 13.3}, {26, 20}, {40, 20}}, false};
+  EXPECT_EQ(fit_line(box, dx).line, box);
+}
+
 TEST(FitLine, ARingStaysARing) {
   Polyline ring{{}, true};
   constexpr int n = 3000;

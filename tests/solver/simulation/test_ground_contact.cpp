@@ -116,7 +116,7 @@ Polyline random_bed(std::mt19937& random) {
         break;
       }
       case 1: {  // notch or V
-        const double depth = uniform(0.5, 4), width = uniform(1, 4);
+        const double depth = uniform(0.5, 4), width = uniform(0.2, 3);
         bed.vertices.push_back({x += 0.5 * width, y - depth});
         bed.vertices.push_back({x += 0.5 * width, y});
         break;
@@ -161,7 +161,6 @@ double deepest_on_random_beds(int from, int to) {
     m.numerics.cfl = 0.3;
     if (seed % 4 == 1) m.boundaries[0].slip = WallSlip::free_slip;
     m.time.end = 6.0;
-    const Polyline wall = ground_line(m.terrain);
     Simulation simulation(m, plan_particles(m), material_properties(m, plan_particles(m)));
     double deepest_here = -1e300;
     try {
