@@ -28,7 +28,8 @@ constexpr Names<WallContact> contacts[] = {{"always", WallContact::always}, {"ap
 constexpr Names<WallSlip> slips[] = {
     {"no_slip", WallSlip::no_slip}, {"friction", WallSlip::friction}, {"free_slip", WallSlip::free_slip}};
 
-/// Times 0 < interval < 2 interval ... < end, where an end within a hair of a multiple counts as that multiple.
+/// Times 0 < interval < 2 interval ... < end, where an end that differs from a multiple by rounding counts as that
+/// multiple.
 std::vector<double> every(double interval, double end) {
   std::vector<double> times;
   for (std::int64_t k = 1; static_cast<double>(k) * interval < end * (1.0 - 1e-12); ++k)

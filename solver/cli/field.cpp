@@ -1,7 +1,6 @@
 // talus field: the friction angle of one realization, as numbers or as a picture, without running it.
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
@@ -45,7 +44,7 @@ FieldOnParticles field_on(const ParticlePlan& plan, const Strength& strength) {
   FieldOnParticles field;
   field.tan_phi = strength.properties.tan_phi;
   for (const SoilPoint& point : plan.soil) field.position.push_back(point.x);
-  for (const double tan_phi : strength.properties.tan_phi) field.phi_deg.push_back(degrees(std::atan(tan_phi)));
+  for (const double tan_phi : strength.properties.tan_phi) field.phi_deg.push_back(friction_angle_deg(tan_phi));
   return field;
 }
 
@@ -102,7 +101,7 @@ void draw(const FieldOnParticles& field, const Model& model, const figures::Stam
   frame.position = field.position;
   frame.tan_phi = field.tan_phi;
   const figures::Snapshot shot{&frame, figures::Colour::friction_angle, "Before the slide"};
-  figures::plot_sequence({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
+  figures::plot_profiles({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
 }
 
 void write(const FieldOnParticles& field, const Model& model, const figures::Stamps& stamps, const fs::path& path) {

@@ -13,7 +13,6 @@
 #include <thread>
 
 #include "case/load.hpp"
-#include "case/study_plan.hpp"
 #include "cli/help.hpp"
 #include "cli/signals.hpp"
 #include "cli/verbs.hpp"

@@ -66,8 +66,10 @@ void VectorisedFlow::swap_rates(Soil& soil, std::size_t i, std::size_t j) {
   });
 }
 
-void VectorisedFlow::permute_rates(Soil&, std::span<const std::uint32_t> order, std::vector<double>& scratch) {
-  for_each_packed_rate(flow_.soil, [&](const char*, auto& array) { permute(array, order, scratch); });
+void VectorisedFlow::permute_rates(Soil& soil, std::span<const std::uint32_t> order, std::vector<double>& scratch) {
+  for_each_pair(soil, flow_.soil, [&](auto&, auto& packed, std::size_t stride, std::size_t) {
+    if (stride == 1) permute(packed, order, scratch);  // the stress is rewritten before it is read
+  });
 }
 
 void VectorisedFlow::rebuild_neighbour_lists(const Soil& soil, const WallParticles& walls, const ParticleCells& cells,

@@ -1,6 +1,8 @@
 #pragma once
-// From outlines to points: area, depth of burial, the lattice that fills a slide, and the distance to a polyline.
+// From outlines to points: area, depth of burial, distance to a polyline, the lattice that fills a slide, and the rows
+// of particles that line a wall.
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -43,5 +45,18 @@ struct SoilPoint {
 /// @param walls  as wall_lines() returns them
 std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<const Polyline> walls, double dx,
                                   Placement placement);
+
+/// A wall particle: where it stands and the piece of wall it stands behind. Fixed particles fill the rock behind the
+/// wall line, [Z20] 2.1 and method of Takeda 1994, Morris 1997.
+struct WallPoint {
+  Vec2 x;                 ///< [m]
+  Vec2 n;                 ///< unit normal of the wall there, towards the soil
+  double depth;           ///< distance to the wall line [m], > 0
+  std::int32_t boundary;  ///< index into Model::boundaries
+};
+
+/// Lines the wall with `layers` rows of particles at depths (k + 1/2) dx, spaced dx along each row.
+/// @param boundary  index that the points are given
+std::vector<WallPoint> fill_walls(const Polyline& wall, double dx, int layers, std::int32_t boundary = 0);
 
 }  // namespace talus

@@ -6,7 +6,6 @@
 #include "integrate/time_step.hpp"
 #include "particles/geometry.hpp"
 #include "particles/particles.hpp"
-#include "particles/walls.hpp"
 #include "simulation/model.hpp"
 #include "sph/flow_constants.hpp"
 

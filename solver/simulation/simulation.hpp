@@ -8,12 +8,11 @@
 #include "simulation/checkpoint_state.hpp"
 #include "simulation/frame.hpp"
 #include "simulation/ground_contact.hpp"
+#include "simulation/memory.hpp"
 #include "simulation/model.hpp"
 #include "simulation/neighbour_upkeep.hpp"
 #include "simulation/particle_setup.hpp"
-#include "simulation/rest_rule.hpp"
 #include "simulation/run_result.hpp"
-#include "simulation/starting_positions.hpp"
 
 namespace talus {
 

@@ -9,7 +9,6 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sph/artificial_viscosity-inl.hpp"
 #include "sph/kernel-inl.hpp"
 #include "sph/momentum-inl.hpp"
 #include "sph/pairs-inl.hpp"

@@ -3,8 +3,6 @@
 
 #include <optional>
 
-#include "material/rheology.hpp"
-
 namespace talus {
 
 enum class WallContact { always, approaching };  ///< approaching: a wall acts only where v_ij . x_ij < 0, [Z20] 2.1

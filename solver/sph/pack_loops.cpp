@@ -11,52 +11,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sph/density_diffusion-inl.hpp"
+#include "sph/continuity-inl.hpp"
 #include "sph/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
-
-using DoubleV = hn::Vec<Doubles>;
-
-/// One value of all particles of a vector in double precision: lower and upper half.
-struct Wide {
-  DoubleV lo, hi;
-};
-HWY_INLINE Wide load(const double* HWY_RESTRICT from, std::size_t count) {
-  const Doubles dd;
-  HWY_ALIGN double buffer[lanes] = {};
-  if (count < lanes) {
-    for (std::size_t l = 0; l < count; ++l) buffer[l] = from[l];
-    from = buffer;
-  }
-  return {hn::LoadU(dd, from), hn::LoadU(dd, from + lanes / 2)};
-}
-HWY_INLINE void store(Wide v, double* HWY_RESTRICT to, std::size_t count) {
-  const Doubles dd;
-  if (count == lanes) {
-    hn::StoreU(v.lo, dd, to);
-    hn::StoreU(v.hi, dd, to + lanes / 2);
-    return;
-  }
-  HWY_ALIGN double buffer[lanes];
-  hn::Store(v.lo, dd, buffer);
-  hn::Store(v.hi, dd, buffer + lanes / 2);
-  for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
-}
-HWY_INLINE Wide wide(Lanes a) {
-  const Doubles dd;
-  return {hn::PromoteTo(dd, hn::LowerHalf(a.v)), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), a.v))};
-}
-HWY_INLINE Lanes narrow(Wide a) {
-  const HalfD half;
-  return Lanes(hn::Combine(D(), hn::DemoteTo(half, a.hi), hn::DemoteTo(half, a.lo)));
-}
-HWY_INLINE Wide each(double value) { return {hn::Set(Doubles(), value), hn::Set(Doubles(), value)}; }
-HWY_INLINE Wide operator+(Wide a, Wide b) { return {hn::Add(a.lo, b.lo), hn::Add(a.hi, b.hi)}; }
-HWY_INLINE Wide operator-(Wide a, Wide b) { return {hn::Sub(a.lo, b.lo), hn::Sub(a.hi, b.hi)}; }
-HWY_INLINE Wide operator*(Wide a, Wide b) { return {hn::Mul(a.lo, b.lo), hn::Mul(a.hi, b.hi)}; }
-HWY_INLINE Wide operator/(Wide a, Wide b) { return {hn::Div(a.lo, b.lo), hn::Div(a.hi, b.hi)}; }
 
 /// Fixed-point coordinates as bit patterns.
 HWY_INLINE Lanes fixed_point(Wide x, double lo, double per_quantum) {

@@ -1,4 +1,4 @@
-// The lists of neighbours that the pair loops run over.
+// The instruction set that the pair loops use, and the lists of neighbours that they run over.
 
 #include <algorithm>
 #include <bit>
@@ -87,6 +87,7 @@ HWY_ATTR void list_batch(const NeighbourSearch& search, std::size_t batch, Clust
 }
 
 std::size_t lanes_in_use() { return lanes; }
+const char* target_name() { return hwy::TargetName(HWY_TARGET); }
 
 }  // namespace talus::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -96,8 +97,22 @@ namespace talus {
 
 HWY_EXPORT(list_batch);
 HWY_EXPORT(lanes_in_use);
+HWY_EXPORT(target_name);
 
 std::size_t cluster_size() { return HWY_DYNAMIC_DISPATCH(lanes_in_use)(); }
+
+bool limit_pair_loops(const std::string& name) {
+#if HWY_ARCH_X86
+  // The better a set, the lower its bit.
+  if (name == "AVX2") hwy::DisableTargets(HWY_AVX2 - 1);
+  if (name == "SSE4") hwy::DisableTargets(HWY_SSE4 - 1);
+  return name == "AVX2" || name == "SSE4";
+#else
+  return name.empty();
+#endif
+}
+
+const char* pair_loops_target() { return HWY_DYNAMIC_DISPATCH(target_name)(); }
 
 void list_neighbours(const NeighbourSearch& search, std::size_t batch, ClusterList& list) {
   HWY_DYNAMIC_DISPATCH(list_batch)(search, batch, list);

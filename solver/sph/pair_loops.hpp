@@ -2,28 +2,14 @@
 // The right-hand side in vectors of single precision (Highway, chosen for the processor at run time). The plain
 // double-precision loops in right_hand_side.cpp are its oracle.
 
-#include <cstdint>
-#include <optional>
-#include <span>
 #include <string>
 
 #include "particles/particles.hpp"
-#include "sph/cluster_list.hpp"
 #include "sph/flow_constants.hpp"
-#include "sph/packed.hpp"
+#include "sph/packed_flow.hpp"
 #include "sph/step_extrema.hpp"
 
 namespace talus {
-
-/// What the vectorised loops read and write.
-struct PackedFlow {
-  FixedPoint fixed;
-  std::optional<double> mass;  ///< of every soil particle, where all have the same [kg/m]
-  PackedSoil soil;
-  PackedWalls walls;
-  std::vector<std::uint32_t> soil_clusters = {0}, wall_clusters = {0};  ///< first place of each, and one more
-  ClusterList soil_soil, soil_wall, wall_soil;                          ///< target_source
-};
 
 /// Particles in one vector.
 std::size_t cluster_size();

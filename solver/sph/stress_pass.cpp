@@ -9,7 +9,6 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sph/density_diffusion-inl.hpp"
 #include "sph/kernel-inl.hpp"
 #include "sph/pairs-inl.hpp"
 #include "sph/point_update-inl.hpp"
@@ -53,9 +52,11 @@ struct ClusterPoint {
   }
   HWY_INLINE void add(Deviator<Lanes> change) const {
     if (!keep) return;
-    add_doubles(change.xx, soil.txx.data() + i, count);
-    add_doubles(change.yy, soil.tyy.data() + i, count);
-    add_doubles(change.xy, soil.txy.data() + i, count);
+    const auto add_to = [&](std::vector<double>& array, Lanes value)
+                            HWY_ATTR { store(load(array.data() + i, count) + wide(value), array.data() + i, count); };
+    add_to(soil.txx, change.xx);
+    add_to(soil.tyy, change.yy);
+    add_to(soil.txy, change.xy);
   }
   HWY_INLINE void set_rate(Deviator<Lanes> dt) const {
     store(dt.xx, f.soil.dtxx.data() + i, count);
@@ -65,7 +66,7 @@ struct ClusterPoint {
 
  private:
   HWY_INLINE Lanes rate(const std::vector<float>& array) const { return load(array.data() + i); }
-  HWY_INLINE Lanes state(const std::vector<double>& array) const { return load_doubles(array.data() + i, count); }
+  HWY_INLINE Lanes state(const std::vector<double>& array) const { return narrow(load(array.data() + i, count)); }
 };
 
 /// What a run has chosen: which sums the loop needs, and which kernel and constitutive model.

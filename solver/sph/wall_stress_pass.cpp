@@ -41,11 +41,13 @@ HWY_ATTR void wall_stress_loop(PackedFlow& f, const FlowConstants& k, WallPartic
     Lanes sxx, syy, sxy, depth;
     load_groups(f.walls.stress.data() + 4 * i, sxx, syy, sxy, depth);
     store_groups(wall.s.xx, wall.s.yy, wall.s.xy, depth, f.walls.stress.data() + 4 * i, count);
-    store_doubles(wall.p, walls.p.data() + i, count);
-    store_doubles(wall.s.xx, walls.sxx.data() + i, count);
-    store_doubles(wall.s.yy, walls.syy.data() + i, count);
-    store_doubles(wall.s.xy, walls.sxy.data() + i, count);
-    store_doubles(wall.density_ratio, walls.density_ratio.data() + i, count);
+    const auto keep = [&](Lanes value, std::vector<double>& array)
+                          HWY_ATTR { store(wide(value), array.data() + i, count); };
+    keep(wall.p, walls.p);
+    keep(wall.s.xx, walls.sxx);
+    keep(wall.s.yy, walls.syy);
+    keep(wall.s.xy, walls.sxy);
+    keep(wall.density_ratio, walls.density_ratio);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "support/csv.hpp"
 #include "support/error.hpp"
@@ -25,6 +26,12 @@ class Fields {
       fail("has " + std::to_string(all_.size()) + " fields instead of " + std::to_string(columns));
   }
   std::string text() { return all_[next_++]; }
+  /// NaN where the field is empty: the run was recorded before the measure existed.
+  double measure() {
+    if (!all_[next_].empty()) return number<double>();
+    ++next_;
+    return std::numeric_limits<double>::quiet_NaN();
+  }
   template <class T>
   T number() {
     const std::string& field = all_[next_++];
@@ -54,7 +61,7 @@ Record record(Fields fields) {
     r.reason = fields.text();
     return r;
   }
-  for (const Measure& measure : measure_table) r.measures.*measure.member = fields.number<double>();
+  for (const Measure& measure : measure_table) r.measures.*measure.member = fields.measure();
   r.mean_phi_deg = fields.number<double>();
   r.captured_variance = fields.number<double>();
   r.steps = fields.number<std::int64_t>();
@@ -74,7 +81,10 @@ std::string csv_header(const std::string& index_name) {
 std::string csv_line(const Record& record) {
   std::string text = std::to_string(record.index) + (record.done ? ",done" : ",failed");
   if (!record.done) return text + std::string(measure_table.size() + 5, ',') + ',' + csv_quoted(record.reason) + '\n';
-  for (const Measure& measure : measure_table) text += ',' + to_text(record.measures.*measure.member);
+  for (const Measure& measure : measure_table) {
+    const double value = record.measures.*measure.member;
+    text += ',' + (std::isnan(value) ? "" : to_text(value));
+  }
   return text + ',' + to_text(record.mean_phi_deg) + ',' + to_text(record.captured_variance) + ',' +
          std::to_string(record.steps) + ',' + to_text(record.wall_clock) + ',' + record.digest + ",\n";
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "statistics/histogram.hpp"
@@ -104,7 +105,7 @@ Json notes_json(const Plan& plan) {
 std::vector<double> values(const std::vector<Record>& records, double Measures::*member) {
   std::vector<double> all;
   for (const Record& r : records)
-    if (r.done) all.push_back(r.measures.*member);
+    if (r.done && !std::isnan(r.measures.*member)) all.push_back(r.measures.*member);
   return all;
 }
 
@@ -121,8 +122,10 @@ bool StudySummary::add(const Record& record) {
     failures_.push_back({{"index", record.index}, {"reason", record.reason}});
     return true;
   }
-  for (std::size_t k = 0; k < measure_table.size(); ++k)
-    samples_[k].push_back(record.measures.*measure_table[k].member);
+  for (std::size_t k = 0; k < measure_table.size(); ++k) {
+    const double value = record.measures.*measure_table[k].member;
+    if (!std::isnan(value)) samples_[k].push_back(value);
+  }
   phi_.push_back(record.mean_phi_deg);
   wall_clock_ += record.wall_clock;
   steps_ += record.steps;

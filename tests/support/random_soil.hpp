@@ -57,7 +57,7 @@ inline CellList sorted(Soil& soil, double reach) {
 /// Evaluates once, by the loops that the constants ask for.
 inline void evaluate(const FlowConstants& k, Soil& soil, WallParticles& walls, const CellList& soil_cells,
                      const CellList& wall_cells) {
-  if (!VectorisedFlow::serves(k.numerics)) return RightHandSide(k).evaluate(soil, walls, soil_cells, wall_cells);
+  if (!VectorisedFlow::serves(k.numerics)) return evaluate_plain(k, soil, walls, {soil_cells, wall_cells});
   VectorisedFlow flow(k, soil);
   flow.rebuild_neighbour_lists(soil, walls, {soil_cells, wall_cells}, 0.0, 0.0);
   flow.evaluate(soil, walls, 0.0, true);

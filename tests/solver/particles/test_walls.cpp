@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "particles/geometry.hpp"
 #include "particles/ground.hpp"
-#include "particles/walls.hpp"
 
 namespace talus {
 namespace {

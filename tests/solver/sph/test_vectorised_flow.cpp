@@ -45,7 +45,7 @@ TEST(VectorisedFlow, ListsReachAsFarAsParticlesMayHaveGone) {
   flow.state_changed();
   Soil plain = soil;
   WallParticles plain_walls = walls;
-  RightHandSide(k).evaluate(plain, plain_walls, soil_cells, wall_cells);
+  evaluate_plain(k, plain, plain_walls, {soil_cells, wall_cells});
   flow.evaluate(soil, walls, 0.0, true);
   flow.read_evaluation(soil, soil);
   expect_close(soil.drho, plain.drho, 2e-6, "drho");
@@ -70,7 +70,7 @@ TEST(VectorisedFlow, EqualsThePlainLoopsAtWallsOfEveryKind) {
         const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
         Soil plain = soil;
         WallParticles plain_walls = walls;
-        RightHandSide(k).evaluate(plain, plain_walls, soil_cells, wall_cells);
+        evaluate_plain(k, plain, plain_walls, {soil_cells, wall_cells});
         k.numerics.precision = Precision::single;
         evaluate(k, soil, walls, soil_cells, wall_cells);
         for_each_rate(plain, [&](const std::string& name, const auto& expected) {
