@@ -7,7 +7,7 @@ namespace talus {
 namespace {
 
 /// The extrema that the vectorised loops find on their way.
-StepExtrema find_extrema(const Soil& soil, const StepStart& start) {
+StepExtrema find_extrema(const Soil& soil, const Soil& start) {
   StepExtrema e;
   for (std::size_t i = 0; i < soil.n_active; ++i) {
     const Vec2 sorted{static_cast<double>(soil.x_sorted[i]), static_cast<double>(soil.y_sorted[i])};
