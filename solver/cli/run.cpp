@@ -125,9 +125,8 @@ Exit run(const RunOptions& options) {
   if (options.json) std::cout << outcome.document;
   if (verbose) print_summary(outcome.result, seed);
   if (outcome.result.penetrated > 0 && !options.study_worker)
-    std::cerr
-        << "warning: " << outcome.result.penetrated
-        << " particles passed through a wall: do not trust this run; try a smaller time step or more wall layers\n";
+    std::cerr << "warning: " << outcome.result.penetrated
+              << " particles were deeper than half a spacing in the ground: do not trust this run\n";
   if (options.figures) draw_figures(options.out);
   return Exit::ok;
 }

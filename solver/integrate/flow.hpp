@@ -60,10 +60,10 @@ class Flow {
   /// Wall clock spent in the passes so far.
   const StageTimes& times() const { return times_; }
 
- protected:
-  /// Something else than step() has changed the state of the soil.
+  /// To be called when something else than step() has changed the state of the soil.
   virtual void state_changed() {}
 
+ protected:
   FlowConstants constants_;
   StageTimes times_;
 };

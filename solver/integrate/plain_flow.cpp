@@ -6,14 +6,14 @@
 namespace talus {
 namespace {
 
-/// The extrema that the vectorised loops find on their way. The displacement in a step is left out: only neighbour
-/// lists need it.
-StepExtrema find_extrema(const Soil& soil) {
+/// The extrema that the vectorised loops find on their way.
+StepExtrema find_extrema(const Soil& soil, const Soil& start) {
   StepExtrema e;
   for (std::size_t i = 0; i < soil.n_active; ++i) {
     const Vec2 sorted{static_cast<double>(soil.x_sorted[i]), static_cast<double>(soil.y_sorted[i])};
     const bool finite = std::isfinite(norm2(soil.position(i)) + norm2(soil.velocity(i)) + soil.rho[i]);
-    e = e.merge({0.0, norm({soil.ax[i], soil.ay[i]}), norm(soil.velocity(i)), norm(soil.position(i) - sorted),
+    const double displacement = norm(soil.position(i) - Vec2{start.x[i], start.y[i]});
+    e = e.merge({displacement, norm({soil.ax[i], soil.ay[i]}), norm(soil.velocity(i)), norm(soil.position(i) - sorted),
                  soil.x[i], soil.x[i], finite && soil.rho[i] > 0.0});
   }
   return e;
@@ -102,7 +102,7 @@ StepExtrema PlainFlow::step(Soil& soil, WallParticles& walls, const ParticleCell
   };
   PlainState state(soil, start_, evaluate);
   advance(constants().numerics.integrator, state, dt);
-  const StepExtrema extrema = find_extrema(soil);
+  const StepExtrema extrema = find_extrema(soil, start_);
   watch.lap(times_.update);
   times_.gradient += evaluating;
   return extrema;

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "particles/ground.hpp"
+
 namespace talus {
 namespace {
 
@@ -84,32 +86,6 @@ Vec2 Polyline::at(double s) const {
   return vertices.back();
 }
 
-Projection project(Vec2 point, const Polyline& line) {
-  double best = std::numeric_limits<double>::infinity();
-  Vec2 foot, normal;
-  for (std::size_t s = 0; s < line.segments(); ++s) {
-    const Vec2 a = line.start(s), ab = line.end(s) - a;
-    const double t = std::clamp(dot(point - a, ab) / norm2(ab), 0.0, 1.0);
-    const Vec2 q = a + t * ab;
-    const double d2 = norm2(point - q);
-    if (d2 < best * (1.0 - 1e-12)) {
-      best = d2;
-      foot = q;
-      normal = left_normal(ab);
-    } else if (d2 <= best * (1.0 + 1e-12)) {
-      normal += left_normal(ab);  // a shared vertex: its normal is that of both segments together
-    }
-  }
-  return {foot, std::copysign(std::sqrt(best), dot(point - foot, normal))};
-}
-
-double signed_distance(Vec2 point, std::span<const Polyline> lines) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Polyline& line : lines)
-    if (const double d = project(point, line).distance; std::abs(d) < std::abs(nearest)) nearest = d;
-  return nearest;
-}
-
 Polyline offset_into_rock(const Polyline& line, double offset) {
   Polyline moved{{}, line.closed};
   const std::size_t n = line.vertices.size();
@@ -136,8 +112,10 @@ Polyline ground_line(const Terrain& terrain) {
 
 std::vector<Polyline> wall_lines(std::span<const Boundary> boundaries, double dx, Placement placement) {
   std::vector<Polyline> lines;
-  for (const Boundary& b : boundaries)
-    lines.push_back(placement == Placement::nodes ? offset_into_rock(b.line, 0.5 * dx) : b.line);
+  for (const Boundary& b : boundaries) {
+    const Polyline line = fit_line(b.line, dx).line;
+    lines.push_back(placement == Placement::nodes ? offset_into_rock(line, 0.5 * dx) : line);
+  }
   return lines;
 }
 
@@ -148,6 +126,7 @@ std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<co
   const double shift = nodes ? 0.0 : 0.5, tolerance = 1e-6 * dx;
   const auto columns = static_cast<std::int64_t>(std::floor(box.width() / dx + 1e-6)) + 1;
   const auto rows = static_cast<std::int64_t>(std::floor(box.height() / dx + 1e-6)) + 1;
+  const Ground ground({walls.begin(), walls.end()});
   std::vector<Polygon> polygons;
   for (const SlidePart& part : slide) polygons.push_back(to_polygon(part.outline));
   std::vector<SoilPoint> points;
@@ -161,7 +140,7 @@ std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<co
                                : x;
       for (std::size_t k = 0; k < slide.size(); ++k) {
         if (!bg::covered_by(Point(probe.x, probe.y), polygons[k])) continue;
-        if (signed_distance(x, walls) >= 0.5 * dx - tolerance) points.push_back({x, slide[k].material});
+        if (ground.nearest(x).distance >= 0.5 * dx - tolerance) points.push_back({x, slide[k].material});
         break;
       }
     }
@@ -169,6 +148,7 @@ std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<co
 }
 
 std::vector<WallPoint> fill_walls(const Polyline& wall, double dx, int layers, std::int32_t boundary) {
+  const Ground ground({wall});
   std::vector<WallPoint> points;
   for (int k = 0; k < layers; ++k) {
     const double depth = (k + 0.5) * dx;
@@ -178,10 +158,10 @@ std::vector<WallPoint> fill_walls(const Polyline& wall, double dx, int layers, s
     const double first = wall.closed ? 0.0 : 0.5;  // a ring starts on a corner, an open row half a spacing in
     for (std::int64_t i = 0; i < n; ++i) {
       const Vec2 x = row.at((static_cast<double>(i) + first) * length / static_cast<double>(n));
-      const Projection foot = project(x, wall);
+      const Ground::Nearest foot = ground.nearest(x);
       // Where a sharp ridge folds the row over itself, the particles that came too near the surface are dropped.
       if (-foot.distance < depth - 0.25 * dx) continue;
-      points.push_back({x, (-1.0 / foot.distance) * (foot.point - x), -foot.distance, boundary});
+      points.push_back({x, foot.normal, -foot.distance, boundary});
     }
   }
   return points;

@@ -24,24 +24,14 @@ double thickness_above(std::span<const Vec2> outline, Vec2 point);
 /// Mass of soil above a point per area of ground, sum of rho0 * thickness [kg/m2].
 double mass_above(std::span<const SlidePart> slide, std::span<const Material> materials, Vec2 point);
 
-/// The projection of a point onto a polyline.
-struct Projection {
-  Vec2 point;       ///< nearest point of the polyline [m]
-  double distance;  ///< [m], positive on the soil's side
-};
-Projection project(Vec2 point, const Polyline& line);
-
-/// Distance of a point to the nearest of several lines, at least one [m]; positive on the soil's side.
-double signed_distance(Vec2 point, std::span<const Polyline> lines);
-
 /// The polyline moved by `offset` towards the rock (mitred corners).
 Polyline offset_into_rock(const Polyline& line, double offset);
 
 /// The line of the ground: the bed with its end walls.
 Polyline ground_line(const Terrain& terrain);
 
-/// The lines that no particle may cross, one for each boundary: its own line; for Placement::nodes half a spacing
-/// behind it.
+/// The lines that no particle may cross, one for each boundary: its own, fitted to the spacing (fit_line); for
+/// Placement::nodes half a spacing behind it.
 std::vector<Polyline> wall_lines(std::span<const Boundary> boundaries, double dx, Placement placement);
 
 /// A soil particle to be.

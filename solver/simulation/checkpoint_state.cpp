@@ -46,7 +46,7 @@ CheckpointState Simulation::state() const {
                         stored(neighbours_.moved_since_sort())};
   s.integers["material"].assign(soil_.material.begin(), soil_.material.end());
   s.integers["id"].assign(soil_.id.begin(), soil_.id.end());
-  s.integers["penetrated"].assign(crossings_.seen().begin(), crossings_.seen().end());
+  s.integers["penetrated"].assign(contact_.lost_ids().begin(), contact_.lost_ids().end());
   s.integers["counters"] = {static_cast<std::int64_t>(soil_.n_active), steps_, evaluations_};
   return s;
 }
@@ -76,7 +76,7 @@ void Simulation::restore(const CheckpointState& state) {
     soil_.id[i] = static_cast<std::int32_t>(id[i]);
   }
   const auto& penetrated = array_of(state.integers, "penetrated", n);
-  crossings_.restore({penetrated.begin(), penetrated.end()});
+  contact_.restore({penetrated.begin(), penetrated.end()});
 
   const auto& counters = array_of(state.integers, "counters", 3);
   if (counters[0] < 0 || counters[0] > static_cast<std::int64_t>(n)) refuse("more active particles than there are");

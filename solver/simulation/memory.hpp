@@ -40,30 +40,6 @@ class StartingPositions {
   std::vector<std::array<std::int32_t, 2>> positions_;
 };
 
-/// Remembers, by id, which particles have ever been seen behind a wall, which must not happen: a run in which any was
-/// is not to be trusted.
-class WallCrossings {
- public:
-  WallCrossings(std::vector<Polyline> walls, std::size_t particles) : walls_(std::move(walls)), seen_(particles, 0) {}
-
-  /// Looks at the active soil, in parallel.
-  void observe(const Soil& soil) {
-#pragma omp parallel for schedule(static, 512)
-    for (std::size_t i = 0; i < soil.n_active; ++i)
-      if (signed_distance(soil.position(i), walls_) < 0.0) seen_[static_cast<std::size_t>(soil.id[i])] = 1;
-  }
-  /// Particles seen so far.
-  std::int64_t count() const { return std::ranges::count(seen_, 1); }
-
-  /// By id: 1 for those seen; for checkpoints.
-  const std::vector<std::uint8_t>& seen() const { return seen_; }
-  void restore(std::vector<std::uint8_t> seen) { seen_ = std::move(seen); }
-
- private:
-  std::vector<Polyline> walls_;
-  std::vector<std::uint8_t> seen_;
-};
-
 /// The stop-at-rest rule of a run: the slide rests once its root-mean-square speed has stayed below a limit for long
 /// enough.
 class RestRule {

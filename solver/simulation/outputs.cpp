@@ -52,8 +52,6 @@ HistoryRow Simulation::history_row() const {
 }
 
 RunResult Simulation::result() const {
-  WallCrossings crossings = crossings_;
-  crossings.observe(soil_);
   RunResult r;
   r.measures = measure_fronts(soil_, model_.terrain.left_boundary, model_.dx);
   r.ending = time_ >= model_.time.end ? Ending::end_time : rests() ? Ending::at_rest : Ending::interrupted;
@@ -64,7 +62,7 @@ RunResult Simulation::result() const {
   r.evaluations = evaluations_;
   r.max_speed = peak_speed_;
   r.final_max_speed = max_speed_;
-  r.penetrated = crossings.count();
+  r.penetrated = contact_.lost();
   r.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
   r.at_rest = max_speed_ < 0.01 * std::sqrt(norm(model_.g) * fall_height(model_));
   r.digest = digest(soil_);

@@ -31,7 +31,7 @@ struct RunResult {
   int threads = 1;
   double max_speed = 0.0;         ///< peak over the run [m/s]
   double final_max_speed = 0.0;   ///< [m/s]
-  std::int64_t penetrated = 0;    ///< soil particles ever seen behind a wall; must be 0
+  std::int64_t penetrated = 0;    ///< soil particles that were ever deep in the ground; must be 0
   std::int64_t left_domain = 0;   ///< soil particles that left through an open end
   bool at_rest = false;           ///< final_max_speed below 1 % of sqrt(|g| H)
   std::string digest;             ///< 16 hex digits over the final state in order of id

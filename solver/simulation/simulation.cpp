@@ -13,8 +13,7 @@
 namespace talus {
 namespace {
 
-constexpr std::int64_t rest_interval = 20;      ///< steps between two observations of the rest rule
-constexpr std::int64_t crossing_interval = 50;  ///< steps between two observations of the walls
+constexpr std::int64_t rest_interval = 20;  ///< steps between two observations of the rest rule
 
 /// Adds up the times of parts of a run.
 StageTimes operator+(const StageTimes& a, const StageTimes& b) {
@@ -31,7 +30,8 @@ Simulation::Simulation(const Model& model, const ParticlePlan& plan, const SoilP
       flow_(make_flow(flow_constants(model), soil_)),
       neighbours_(walls_, constants().h, model.dx),
       starts_(plan.soil, bounding_box(model.slide)),
-      crossings_(wall_lines(model.boundaries, model.dx, model.placement), plan.soil.size()),
+      contact_(wall_lines(model.boundaries, model.dx, model.placement), wall_friction(model.boundaries), model.dx,
+               plan.soil.size()),
       rest_rule_(model.time.stop_at_rest),
       bounds_(step_bounds(model, constants())),
       max_acceleration_(norm(model.g)) {}
@@ -40,20 +40,20 @@ void Simulation::step(double until) {
   const double dt = choose_step(until);
   neighbours_.prepare(soil_, walls_, *flow_, dt, max_speed_);
   filter_density_if_due();
-  const StepExtrema extrema = flow_->step(soil_, walls_, neighbours_.cells(), dt);
+  StepExtrema extrema = flow_->step(soil_, walls_, neighbours_.cells(), dt);
 
   Stopwatch watch;
   time_ = until - time_ <= dt ? until : time_ + dt;
   ++steps_;
   evaluations_ += evaluations_per_step(model_.numerics.integrator);
   check(extrema);
+  meet_the_ground(extrema);
   max_speed_ = extrema.max_speed;
   max_acceleration_ = extrema.max_acceleration;
   peak_speed_ = std::max(peak_speed_, max_speed_);
   neighbours_.advance(extrema);
   if (rest_rule_.active() && steps_ % rest_interval == 0) rest_rule_.observe(time_, rms_speed(soil_));
   retire_departed(extrema);
-  if (steps_ % crossing_interval == 0) crossings_.observe(soil_);
   watch.lap(times_.update);
 }
 
@@ -92,6 +92,15 @@ void Simulation::report_divergence() const {
                           ", " + std::to_string(start.y) +
                           ") m, is no longer finite or faster than 10 times sound; try a smaller time step",
                       steps_, time_, first);
+}
+
+/// Single particles meet the ground; what they are put back counts as moved.
+void Simulation::meet_the_ground(StepExtrema& extrema) {
+  const double put_back = contact_.act(soil_, extrema.max_displacement);
+  if (put_back == 0.0) return;
+  extrema.max_displacement += put_back;
+  extrema.moved_since_sort += put_back;
+  flow_->state_changed();
 }
 
 /// Soil that left through an open end stops taking part: it is swapped behind the active ones and keeps its last state.

@@ -7,6 +7,7 @@
 #include "integrate/flow.hpp"
 #include "simulation/checkpoint_state.hpp"
 #include "simulation/frame.hpp"
+#include "simulation/ground_contact.hpp"
 #include "simulation/memory.hpp"
 #include "simulation/model.hpp"
 #include "simulation/neighbour_upkeep.hpp"
@@ -60,6 +61,7 @@ class Simulation {
   void filter_density_if_due();
   void check(const StepExtrema& extrema) const;
   [[noreturn]] void report_divergence() const;
+  void meet_the_ground(StepExtrema& extrema);
   void retire_departed(const StepExtrema& extrema);
 
   Model model_;
@@ -68,7 +70,7 @@ class Simulation {
   std::unique_ptr<Flow> flow_;
   NeighbourUpkeep neighbours_;
   StartingPositions starts_;
-  WallCrossings crossings_;
+  GroundContact contact_;
   RestRule rest_rule_;
   StepBounds bounds_;
   double time_ = 0.0;              ///< [s]

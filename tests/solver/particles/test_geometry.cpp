@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "particles/geometry.hpp"
+#include "particles/ground.hpp"
 
 namespace talus {
 namespace {
@@ -37,22 +38,6 @@ TEST(Geometry, OverburdenWeighsEachLayerWithItsOwnDensity) {
   EXPECT_DOUBLE_EQ(mass_above(layers, materials, {1, 3}), 1 * 2300.0);
 }
 
-TEST(Geometry, NearestKnowsTheSoilSide) {
-  const Polyline line{{{0, 0}, {10, 0}}, false};
-  EXPECT_DOUBLE_EQ(project({3, 2}, line).distance, 2.0);
-  EXPECT_DOUBLE_EQ(project({3, -2}, line).distance, -2.0);
-  EXPECT_EQ(project({3, -2}, line).point, (Vec2{3, 0}));
-}
-
-TEST(Geometry, NearestAtCornersOfBothKinds) {
-  const Polyline valley{{{0, 2}, {0, 0}, {2, 0}}, false};  // soil inside the corner
-  EXPECT_GT(project({0.1, 0.1}, valley).distance, 0);
-  EXPECT_DOUBLE_EQ(project({-3, -4}, valley).distance, -5.0);
-  const Polyline ridge{{{-2, -2}, {0, 0}, {2, -2}}, false};  // soil above the roof
-  EXPECT_DOUBLE_EQ(project({0, 1}, ridge).distance, 1.0);
-  EXPECT_LT(project({0, -0.5}, ridge).distance, 0);
-}
-
 TEST(Geometry, OffsetOfARightAngleKeepsBothDistances) {
   const Polyline moved = offset_into_rock({{{0, 2}, {0, 0}, {2, 0}}, false}, 0.5);
   EXPECT_NEAR(moved.vertices[1].x, -0.5, 1e-14);
@@ -83,19 +68,8 @@ TEST(Geometry, FillKeepsHalfASpacingFromASlopingBed) {
   const auto points =
       fill_slide(std::vector<SlidePart>{{{{0, 5}, {10, 0}, {10, 6}, {0, 6}}, 0}}, walls, 0.2, Placement::cells);
   ASSERT_FALSE(points.empty());
-  for (const SoilPoint& p : points) EXPECT_GE(signed_distance(p.x, walls), 0.1 - 1e-6);
-}
-
-TEST(Geometry, TheNearestOfSeveralLinesDecides) {
-  // A floor, and a block on it: a ring that is walked clockwise, so that the soil is outside.
-  const std::vector<Polyline> walls{{{{-5, 0}, {5, 0}}, false}, {{{1, 0.5}, {1, 2}, {2, 2}, {2, 0.5}}, true}};
-  EXPECT_DOUBLE_EQ(signed_distance({-3, 0.4}, walls), 0.4);
-  EXPECT_DOUBLE_EQ(signed_distance({0.7, 1}, walls), 1 - 0.7);
-  EXPECT_DOUBLE_EQ(signed_distance({1.1, 1}, walls), 1 - 1.1);
-  EXPECT_DOUBLE_EQ(signed_distance({-3, -0.4}, walls), -0.4);
-  const std::vector<SlidePart> soil{{{{0, 0}, {3, 0}, {3, 3}, {0, 3}}, 0}};
-  for (const SoilPoint& p : fill_slide(soil, walls, 0.25, Placement::cells))
-    EXPECT_GE(signed_distance(p.x, walls), 0.125 - 1e-6);
+  const Ground ground(walls);
+  for (const SoilPoint& p : points) EXPECT_GE(ground.nearest(p.x).distance, 0.1 - 1e-6);
 }
 
 TEST(Geometry, FillGivesEachLayerItsMaterial) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "particles/geometry.hpp"
+#include "particles/ground.hpp"
 
 namespace talus {
 namespace {
@@ -31,11 +32,12 @@ TEST(Walls, LayersOfAFlatBed) {
 
 TEST(Walls, NormalsPointFromEveryParticleToItsFoot) {
   const Polyline line{{{0, 8}, {0, 5}, {8, 0}, {11, 2}, {20, 2}}, false};  // wall, slope, valley, ridge
+  const Ground ground({line});
   for (const WallPoint& w : fill_walls(line, 0.2, 4)) {
     EXPECT_NEAR(norm(w.n), 1.0, 1e-12);
     EXPECT_GT(w.depth, 0.0);
-    EXPECT_NEAR(norm(w.x + w.depth * w.n - project(w.x, line).point), 0.0, 1e-9);
-    EXPECT_LT(project(w.x, line).distance, 0.0);
+    EXPECT_NEAR(norm(w.x + w.depth * w.n - ground.nearest(w.x).point), 0.0, 1e-9);
+    EXPECT_LT(ground.nearest(w.x).distance, 0.0);
   }
 }
 

@@ -1,0 +1,52 @@
+#pragma once
+// The ground as the particles can see it: lines without what is finer than the spacing, and the nearest point of them.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "particles/geometry.hpp"
+
+namespace talus {
+
+/// A line as the particles can see it.
+struct FittedLine {
+  Polyline line;
+  double noise = 0.0;      ///< standard deviation of the survey's noise across the line [m]; 0 where it cannot be told
+  double tolerance = 0.0;  ///< vertices nearer than this to the line through others were taken out [m]
+};
+
+/// Takes out what is finer than the particles can see.
+/// - Where segments are shorter than dx, vertices are taken out by the method of Douglas and Peucker 1973, with a
+///   tolerance of 0.1 dx or four times the noise, at most dx. What is left moves across the line, at most by the
+///   tolerance, to where the sum of the squared distances of all given vertices is least: a survey with noise then
+///   gives the line without.
+/// - A notch that a disc of diameter dx cannot enter is filled up to where it can.
+/// A line without either stays as it is, vertex by vertex.
+/// @param line  [m], at least 2 vertices, neighbours apart
+/// @param dx    particle spacing [m], > 0
+FittedLine fit_line(const Polyline& line, double dx);
+
+/// Nearest point of several lines, in logarithmic time. Thread-safe once built.
+class Ground {
+ public:
+  /// Where a point stands.
+  struct Nearest {
+    Vec2 point;              ///< on a line [m]
+    double distance = 0.0;   ///< [m], positive on the soil's side
+    Vec2 normal;             ///< unit normal there, towards the soil; at a vertex towards the point
+    std::uint32_t line = 0;  ///< index of the line
+    bool past_end = false;   ///< the nearest point is the end of an open line, and `point` lies beyond it
+  };
+
+  /// @param lines  at least one
+  explicit Ground(std::vector<Polyline> lines);
+  ~Ground();
+  Nearest nearest(Vec2 point) const;
+
+ private:
+  struct Segments;
+  std::unique_ptr<const Segments> segments_;
+};
+
+}  // namespace talus

@@ -1,0 +1,71 @@
+#include "simulation/ground_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace talus {
+
+GroundContact::GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx,
+                             std::size_t particles)
+    : ground_(std::move(lines)), friction_(std::move(friction)), dx_(dx), next_(particles, 0.0), lost_(particles, 0) {}
+
+double GroundContact::act(Soil& soil, double displacement) {
+  travelled_ += 1.0001 * displacement;  // found in single precision
+  double farthest = 0.0;
+#pragma omp parallel for schedule(static, 512) reduction(max : farthest)
+  for (std::size_t i = 0; i < soil.n_active; ++i)
+    if (travelled_ >= next_[static_cast<std::size_t>(soil.id[i])]) farthest = std::max(farthest, act_on(soil, i));
+  travelled_ += 2.0 * farthest;  // what was put back may be nearer to other ground
+  return farthest;
+}
+
+/// Acts on one particle. @return the distance that it was put back [m]
+double GroundContact::act_on(Soil& soil, std::size_t i) {
+  constexpr int surfaces = 4;        // a particle in a corner touches several
+  constexpr double rounding = 1e-9;  // of positions that were put back to the reach [dx]
+  const auto id = static_cast<std::size_t>(soil.id[i]);
+  const Vec2 start = soil.position(i);
+  for (int k = 0; k < surfaces; ++k) {
+    const Vec2 x = soil.position(i);
+    const Ground::Nearest near = ground_.nearest(x);
+    const double gap = near.distance - reach * dx_;
+    if (near.past_end || gap > -rounding * dx_) {
+      next_[id] = travelled_ + std::max(gap, 0.0);
+      break;
+    }
+    if (near.distance < -deepest * dx_) {
+      lost_[id] = 1;
+      break;
+    }
+    // In a corner too narrow for the reach the line itself is as far as the particle can be put back.
+    const double to = k + 1 < surfaces ? reach * dx_ : 0.0;
+    const Vec2 normal = near.normal;
+    const Vec2 back = near.point + to * normal;
+    soil.x[i] = back.x;
+    soil.y[i] = back.y;
+    slow_down(soil, i, normal, friction_[near.line]);
+  }
+  return norm(soil.position(i) - start);
+}
+
+void GroundContact::slow_down(Soil& soil, std::size_t i, Vec2 normal, const WallFriction& wall) const {
+  const Vec2 v = soil.velocity(i);
+  const double approach = -dot(v, normal);
+  if (approach <= 0.0) return;
+  const Vec2 along = v + approach * normal;
+  const double speed = norm(along);
+  const double tan_phi = wall.slip == WallSlip::free_slip ? 0.0 : std::min(soil.tan_phi[i], wall.tan_phi);
+  const double kept = speed > 0.0 ? std::max(0.0, 1.0 - tan_phi * approach / speed) : 0.0;
+  soil.vx[i] = kept * along.x;
+  soil.vy[i] = kept * along.y;
+}
+
+std::int64_t GroundContact::lost() const { return std::accumulate(lost_.begin(), lost_.end(), std::int64_t{0}); }
+
+void GroundContact::restore(std::vector<std::uint8_t> lost) {
+  lost_ = std::move(lost);
+  std::ranges::fill(next_, 0.0);
+}
+
+}  // namespace talus

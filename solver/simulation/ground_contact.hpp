@@ -1,0 +1,56 @@
+#pragma once
+// Contact of single particles with the ground. Soil at its full density is held by the pressure of the walls; soil that
+// has come apart has no pressure, and nothing else would hold it.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "particles/ground.hpp"
+#include "particles/particles.hpp"
+#include "sph/flow_constants.hpp"
+
+namespace talus {
+
+/// An inelastic contact with Coulomb friction. It takes energy from the soil and never gives any: a particle is put
+/// back to where the ground begins, loses the velocity with which it came, and is slowed along the ground by
+/// tan(phi) times the velocity lost, by the smaller of the soil's and the boundary's friction, without friction where
+/// the boundary has free slip.
+/// Not thread-safe; the loops inside run on OpenMP's threads, with the same bits for any number of them.
+class GroundContact {
+ public:
+  /// Nearer to the ground than this the contact acts [dx]. Soil that bears load keeps about half a spacing.
+  static constexpr double reach = 0.1;
+  /// Soil deeper in the ground than this after a step has not come through the surface in it: it is not put back, and
+  /// counts as lost in the ground [dx].
+  static constexpr double deepest = 0.5;
+
+  /// @param lines     of the boundaries, at least one
+  /// @param friction  of each boundary
+  /// @param dx        particle spacing [m]
+  GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx, std::size_t particles);
+
+  /// To be called after every step.
+  /// @param displacement  of the particle that moved the farthest since the last call [m]
+  /// @return the largest distance that a particle was put back [m]; 0 where the contact has not acted
+  double act(Soil& soil, double displacement);
+
+  /// Particles that have ever been lost in the ground.
+  std::int64_t lost() const;
+  /// By id: 1 for those; for checkpoints.
+  const std::vector<std::uint8_t>& lost_ids() const { return lost_; }
+  void restore(std::vector<std::uint8_t> lost);
+
+ private:
+  double act_on(Soil& soil, std::size_t i);
+  void slow_down(Soil& soil, std::size_t i, Vec2 normal, const WallFriction& wall) const;
+
+  Ground ground_;
+  std::vector<WallFriction> friction_;
+  double dx_;
+  double travelled_ = 0.0;    ///< sum of the displacements so far [m]
+  std::vector<double> next_;  ///< by id: value of travelled_ before which the particle cannot be in reach [m]
+  std::vector<std::uint8_t> lost_;
+};
+
+}  // namespace talus
