@@ -27,6 +27,15 @@ Deviator<double> at_rest(ElasticStress& elastic, double tau_y, ShearRate norm = 
   return ElastoViscoplastic<double>(rheology).stress(state, elastic);
 }
 
+TEST(Elastoviscoplastic, YieldsAtTheCohesionAndTheFrictionUnderPressure) {
+  ElasticStress elastic{.t = {0, 0, 900}};
+  const PointState<double> state{
+      .e = {0, 0, 0}, .two_spin = 0, .gamma_dot = 0, .p = 1500, .c = 200, .tan_phi = 0.3, .eta = 50, .two_G = 2e6};
+  const ElastoViscoplastic<double> model{Rheology{}};
+  EXPECT_DOUBLE_EQ(model.stress(state, elastic).xy, 200 + 1500 * 0.3);
+  EXPECT_DOUBLE_EQ(elastic.t.xy, 200 + 1500 * 0.3);
+}
+
 TEST(Elastoviscoplastic, SimpleShearLoadsAtTheRateG) {
   const double G = 3e6, rate = 0.02;
   const Gradient<double> L{0, rate, 0, 0};

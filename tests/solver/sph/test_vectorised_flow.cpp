@@ -19,29 +19,29 @@ namespace {
 
 using namespace testing_support;
 
-/// Moves every particle by exactly `way` in some direction.
-void displace(Soil& soil, double way, unsigned seed) {
+/// Moves every particle by exactly `displacement` in some direction.
+void displace(Soil& soil, double displacement, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> angle(0.0, 2.0 * std::numbers::pi);
   for (std::size_t i = 0; i < soil.size(); ++i) {
     const double a = angle(engine);
-    soil.x[i] += way * std::cos(a);
-    soil.y[i] += way * std::sin(a);
+    soil.x[i] += displacement * std::cos(a);
+    soil.y[i] += displacement * std::sin(a);
   }
 }
 
 TEST(VectorisedFlow, ListsReachAsFarAsParticlesMayHaveGone) {
-  // Large ways, so that a list that is too short by one of them misses neighbours of weight.
+  // Large displacements, so that a list that is too short by one of them misses neighbours of weight.
   FlowConstants k = constants(0.1);
-  const double moved = 0.6 * k.h, way = 0.4 * k.h;
+  const double moved = 0.6 * k.h, displacement = 0.4 * k.h;
   Soil soil = random_soil(40, 12, k.dx, 41);
-  for (double& y : soil.y) y += moved + way;  // nothing goes through the wall
+  for (double& y : soil.y) y += moved + displacement;  // nothing goes through the wall
   WallParticles walls = flat_walls(40, k.dx);
-  const CellList soil_cells = sorted(soil, 2 * k.h + moved + way), wall_cells = sorted(walls, 2 * k.h);
+  const CellList soil_cells = sorted(soil, 2 * k.h + moved + displacement), wall_cells = sorted(walls, 2 * k.h);
   displace(soil, moved, 1);
   VectorisedFlow flow(k, soil);
-  flow.rebuild_neighbour_lists(soil, walls, {soil_cells, wall_cells}, moved, way);
-  displace(soil, way, 2);
+  flow.rebuild_neighbour_lists(soil, walls, {soil_cells, wall_cells}, moved, displacement);
+  displace(soil, displacement, 2);
   flow.state_changed();
   Soil plain = soil;
   WallParticles plain_walls = walls;
