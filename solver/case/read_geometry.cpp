@@ -95,7 +95,7 @@ void cut_outlines(ObjectReader& in, const Vertices& ground, const Vertices& slip
       slide.origins.push_back({outline, slip.source});
       slide.parts.push_back({std::move(outline), 0});
     }
-    if (slide.parts.empty()) in.fault("", "holds no soil: the slip surface nowhere lies below the ground surface");
+    if (slide.parts.empty()) in.fault("", "holds no soil: no part of the slip surface lies below the ground surface");
   }
   in.record("outlines", std::move(resolved));
 }

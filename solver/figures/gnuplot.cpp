@@ -49,17 +49,16 @@ GnuplotOutput run_gnuplot(const std::string& script) {
   ::posix_spawn_file_actions_adddup2(&redirections, ::fileno(out.get()), STDOUT_FILENO);
   ::posix_spawn_file_actions_adddup2(&redirections, ::fileno(err.get()), STDERR_FILENO);
   // gnuplot 6 warns of a degree sign in the plain C locale.
-  const char* arguments[] = {"env", "LC_ALL=C.UTF-8", "gnuplot", "--default-settings", nullptr};
+  const char* arguments[] = {"/usr/bin/env", "LC_ALL=C.UTF-8", "gnuplot", "--default-settings", nullptr};
   pid_t child = 0;
-  const int error =
-      ::posix_spawnp(&child, arguments[0], &redirections, nullptr, const_cast<char**>(arguments), environ);
+  const int error = ::posix_spawn(&child, arguments[0], &redirections, nullptr, const_cast<char**>(arguments), environ);
   ::posix_spawn_file_actions_destroy(&redirections);
-  if (error != 0 && error != ENOENT) fail("cannot start gnuplot", error);
+  if (error != 0) fail("cannot start gnuplot", error);
   int status = 0;
-  while (error == 0 && ::waitpid(child, &status, 0) < 0)
+  while (::waitpid(child, &status, 0) < 0)
     if (errno != EINTR) fail("cannot wait for gnuplot", errno);
-  constexpr int not_found = 127;  // env's exit status
-  if (error == ENOENT || (WIFEXITED(status) && WEXITSTATUS(status) == not_found))
+  constexpr int not_executable = 126, not_found = 127;  // exit status of env
+  if (WIFEXITED(status) && (WEXITSTATUS(status) == not_found || WEXITSTATUS(status) == not_executable))
     throw IoError("gnuplot not found, so no figures were drawn; install gnuplot-nox");
   GnuplotOutput output{contents(out.get()), contents(err.get())};
   if (status != 0) throw IoError("gnuplot failed: " + output.warnings);
