@@ -8,14 +8,15 @@ namespace talus {
 
 GroundContact::GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx,
                              std::size_t particles)
-    : ground_(std::move(lines)), friction_(std::move(friction)), dx_(dx), next_(particles, 0.0), lost_(particles, 0) {}
+    : ground_(std::move(lines)), friction_(std::move(friction)), dx_(dx), next_(particles, 0.0f), lost_(particles, 0) {}
 
 double GroundContact::act(Soil& soil, double displacement) {
   travelled_ += 1.0001 * displacement;  // found in single precision
   double farthest = 0.0;
 #pragma omp parallel for schedule(static, 512) reduction(max : farthest)
   for (std::size_t i = 0; i < soil.n_active; ++i)
-    if (travelled_ >= next_[static_cast<std::size_t>(soil.id[i])]) farthest = std::max(farthest, act_on(soil, i));
+    if (travelled_ >= static_cast<double>(next_[static_cast<std::size_t>(soil.id[i])]))
+      farthest = std::max(farthest, act_on(soil, i));
   travelled_ += 2.0 * farthest;  // what was put back may be nearer to other ground
   return farthest;
 }
@@ -31,7 +32,8 @@ double GroundContact::act_on(Soil& soil, std::size_t i) {
     const Ground::Nearest near = ground_.nearest(x);
     const double gap = near.distance - reach * dx_;
     if (near.past_end || gap > -rounding * dx_) {
-      next_[id] = travelled_ + std::max(gap, 0.0);
+      constexpr double rounded_down = 1.0 - 1e-6;
+      next_[id] = static_cast<float>(rounded_down * (travelled_ + std::max(gap, 0.0)));
       break;
     }
     if (near.distance < -deepest * dx_) {
@@ -65,7 +67,7 @@ std::int64_t GroundContact::lost() const { return std::accumulate(lost_.begin(),
 
 void GroundContact::restore(std::vector<std::uint8_t> lost) {
   lost_ = std::move(lost);
-  std::ranges::fill(next_, 0.0);
+  std::ranges::fill(next_, 0.0f);
 }
 
 }  // namespace talus

@@ -48,8 +48,8 @@ class GroundContact {
   Ground ground_;
   std::vector<WallFriction> friction_;
   double dx_;
-  double travelled_ = 0.0;    ///< sum of the displacements so far [m]
-  std::vector<double> next_;  ///< by id: value of travelled_ before which the particle cannot be in reach [m]
+  double travelled_ = 0.0;   ///< sum of the displacements so far [m]
+  std::vector<float> next_;  ///< by id: value of travelled_ before which the particle cannot be in reach [m]
   std::vector<std::uint8_t> lost_;
 };
 
