@@ -123,7 +123,7 @@ Answer answer_of(Exchange& exchange) try {
   if (e.reason != reason::bad_request && e.reason != reason::quota) throw;
   std::string message = e.what();
   for (const Fault& fault : e.faults)
-    if (fault.message != e.what()) message += "; " + fault.pointer + " " + fault.message;
+    if (fault.message != e.what()) message += "; " + (fault.pointer.empty() ? "" : fault.pointer + " ") + fault.message;
   return error_answer({"InvalidInput", message});
 }
 

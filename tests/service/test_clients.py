@@ -104,7 +104,7 @@ class Umbridge(ServiceTest):
             self.assertEqual(self.daemon.post("/Evaluate", body).status, 400)
         said = self.daemon.post("/Evaluate", "{").json["error"]
         self.assertEqual(said["type"], "InvalidInput")
-        self.assertIn("the body is not JSON;  body:1:2: syntax error", said["message"])
+        self.assertIn("the body is not JSON; body:1:2: syntax error", said["message"])
 
     def test_the_quotas_hold_here_too(self):
         body = {"name": "slope", "input": [[0.0] * self.TERMS, [1e6]], "config": {"parameters": ["end_s"]}}
