@@ -16,16 +16,6 @@ constexpr std::size_t many = 200'000;  // particles that are faster drawn as an 
 constexpr double disk_radius =
     std::numbers::sqrt2 / 2;  // of dx: the circle around a particle's square, so that no holes show at rest
 
-// The layout of a sheet [px].
-constexpr double header = 68;        // px: title and subtitle
-constexpr double footer = 34;        // px: source line
-constexpr double left = 62;          // px: y tics and label of each panel
-constexpr double right = 24;         // px
-constexpr double beneath = 46;       // px: x tics and label of each panel
-constexpr double tallest = 440;      // px, of one panel
-constexpr double narrowest = 760;    // px, so that title and colour bar find room
-constexpr double tall_sheet = 1250;  // px: more columns rather than a taller sheet
-
 struct Drawing {
   Sheet& sheet;
   const Layout& layout;
@@ -148,6 +138,14 @@ Box view_of(std::span<const Frame* const> frames, const Terrain& terrain, double
 }
 
 Layout profile_layout(std::size_t n, const Box& view, double caption) {
+  constexpr double header = 68;        // px: title and subtitle
+  constexpr double footer = 34;        // px: source line
+  constexpr double left = 62;          // px: y tics and label of each panel
+  constexpr double right = 24;         // px
+  constexpr double beneath = 46;       // px: x tics and label of each panel
+  constexpr double tallest = 440;      // px, of one panel
+  constexpr double narrowest = 760;    // px, so that title and colour bar find room
+  constexpr double tall_sheet = 1250;  // px: more columns rather than a taller sheet
   Layout layout;
   for (std::size_t columns = 1; columns <= 4; ++columns) {
     layout.canvas.width = columns == 1 ? 1040 : 1320;

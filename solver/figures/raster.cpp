@@ -36,12 +36,12 @@ struct SampleGrid {
 };
 
 // Red, green, blue and alpha of a pixel from its sample points.
-std::array<std::uint32_t, 4> pixel_of(const SampleGrid& grid, std::span<const Disk> disks, int i, int j) {
+std::array<std::uint32_t, 4> pixel_of(const SampleGrid& sampled, std::span<const Disk> disks, int i, int j) {
   std::array<std::uint32_t, 4> sum{};
   std::uint32_t covered = 0;
   for (int b = 0; b < samples; ++b) {
     for (int a = 0; a < samples; ++a) {
-      const std::int32_t d = grid.disk[static_cast<std::size_t>(samples * j + b) * grid.nx + samples * i + a];
+      const std::int32_t d = sampled.disk[static_cast<std::size_t>(samples * j + b) * sampled.nx + samples * i + a];
       if (d < 0) continue;
       ++covered;
       const std::uint32_t rgb = disks[static_cast<std::size_t>(d)].rgb;
@@ -68,12 +68,12 @@ Image disk_image(std::span<const Disk> disks, double radius, double pixel) {
   image.columns = static_cast<int>(std::ceil(box.width() / image.pixel));
   image.rows = static_cast<int>(std::ceil(box.height() / image.pixel));
   image.first = box.lo + Vec2{image.pixel / 2, image.pixel / 2};
-  SampleGrid grid{box.lo, image.pixel / samples, samples * image.columns, samples * image.rows, {}};
-  grid.disk.assign(static_cast<std::size_t>(grid.nx) * grid.ny, -1);
-  for (std::size_t d = 0; d < disks.size(); ++d) grid.draw(static_cast<std::int32_t>(d), disks[d].centre, radius);
+  SampleGrid sampled{box.lo, image.pixel / samples, samples * image.columns, samples * image.rows, {}};
+  sampled.disk.assign(static_cast<std::size_t>(sampled.nx) * sampled.ny, -1);
+  for (std::size_t d = 0; d < disks.size(); ++d) sampled.draw(static_cast<std::int32_t>(d), disks[d].centre, radius);
   for (int j = 0; j < image.rows; ++j) {
     for (int i = 0; i < image.columns; ++i) {
-      for (const std::uint32_t byte : pixel_of(grid, disks, i, j)) image.rgba += static_cast<char>(byte);
+      for (const std::uint32_t byte : pixel_of(sampled, disks, i, j)) image.rgba += static_cast<char>(byte);
     }
   }
   return image;

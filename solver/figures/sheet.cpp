@@ -10,7 +10,7 @@
 namespace talus::figures {
 namespace {
 
-constexpr double margin = 24;  // px left and right of the stamps
+constexpr double side_margin = 24;  // px left and right of the stamps
 // Mean width of a character [px].
 constexpr double px_bold = 8.8;
 constexpr double px_text = 6.4;
@@ -116,10 +116,10 @@ Sheet::Sheet(const Canvas& size, const Stamps& stamps, double reserved) : canvas
   const auto fitted = [](const std::string& words, double room, double px) {
     return shortened(words, static_cast<std::size_t>(std::max(1.0, room / px)));
   };
-  const double room = canvas.width - 2 * margin;
-  text(margin, 26, fitted(stamps.title, room - reserved, px_bold), {.points = 12, .bold = true});
-  text(margin, 50, fitted(stamps.subtitle, room, px_text), {.colour = faint});
-  text(margin, canvas.height - 13, fitted(stamps.source, room, px_small), {.points = 8, .colour = faint});
+  const double room = canvas.width - 2 * side_margin;
+  text(side_margin, 26, fitted(stamps.title, room - reserved, px_bold), {.points = 12, .bold = true});
+  text(side_margin, 50, fitted(stamps.subtitle, room, px_text), {.colour = faint});
+  text(side_margin, canvas.height - 13, fitted(stamps.source, room, px_small), {.points = 8, .colour = faint});
   script("set multiplot");
 }
 
