@@ -2,7 +2,6 @@
 // Statistics of a job, made in this process from its records in the database.
 
 #include "queue/store.hpp"
-#include "study/paths.hpp"
 #include "study/summary.hpp"
 
 namespace talus::service {

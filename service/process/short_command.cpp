@@ -15,14 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_out_bytes = std::size_t{64} << 20;
 
-executor::Process started(const executor::Command& command, const fs::path& out, const fs::path& err) try {
-  return executor::Process(command, out, err);
-} catch (const executor::ProcessError& e) {
-  IoError thrown(e.what());
-  thrown.error = e.error;
-  throw thrown;
-}
-
 }  // namespace
 
 CommandOutput run_to_end(const executor::Command& command, const fs::path& scratch, std::chrono::milliseconds limit,
@@ -39,7 +31,7 @@ CommandOutput run_to_end(const executor::Command& command, const fs::path& scrat
   } const remover{out, err};
 
   CommandOutput outcome;
-  executor::Process child = started(command, out, err);
+  executor::Process child(command, out, err);
   const auto deadline = std::chrono::steady_clock::now() + limit;
   std::chrono::milliseconds nap{1};
   for (std::optional<executor::ProcessEnd> end; !(end = child.poll()); std::this_thread::sleep_for(nap)) {

@@ -57,19 +57,17 @@ Run run_of(SQLite::Statement& row) {
   run.crashes = row.getColumn(i++).getInt64();
   if (run.state == RunState::done) {
     Record result{.index = run.key.index, .done = true};
-    for (const Measure& measure : measure_table) {
+    visit_numbers(result, [&](const char*, const std::string&, auto& number) {
       const SQLite::Column value = row.getColumn(i++);
-      // A run from before the measure existed has no value of it.
-      result.measures.*measure.member = value.isNull() ? std::numeric_limits<double>::quiet_NaN() : value.getDouble();
-    }
-    result.mean_phi_deg = row.getColumn(i++).getDouble();
-    result.captured_variance = row.getColumn(i++).getDouble();
-    result.steps = row.getColumn(i++).getInt64();
-    result.wall_clock = row.getColumn(i++).getDouble();
+      if constexpr (std::is_same_v<decltype(number), std::int64_t&>)
+        number = value.getInt64();
+      else  // a run from before the measure existed has no value of it
+        number = value.isNull() ? std::numeric_limits<double>::quiet_NaN() : value.getDouble();
+    });
     result.digest = row.getColumn(i++).getString();
     run.result = std::move(result);
   } else if (run.state == RunState::failed) {
-    i += static_cast<int>(measure_table.size()) + 5;
+    i += static_cast<int>(measure_table.size() + covariate_table.size()) + 1;
     Failure failure;
     failure.reason = row.getColumn(i++).getString();
     failure.exit_code = small(row.getColumn(i++));

@@ -12,12 +12,12 @@ inline constexpr const char* job_columns =
     "may_stop_early, case_hash, particles, steps, created, updated, started, finished, done, failed, floor_made, "
     "version";
 
-/// The columns of a run: its key and state, the measures in the order of their table, and how it ended.
+/// The columns of a run: its key and state, its numbers in the order of their tables, and how it ended.
 inline const std::string run_columns = [] {
   std::string columns = "job, floor, idx, state, attempt, crashes, ";
-  for (const Measure& measure : measure_table) columns += measure.key + std::string(", ");
-  return columns +
-         "mean_friction_angle_deg, captured_variance, steps, wall_clock_s, digest, reason, exit_code, signal, log_tail";
+  const Record any;
+  visit_numbers(any, [&](const char* key, const std::string&, auto) { columns += key + std::string(", "); });
+  return columns + "digest, reason, exit_code, signal, log_tail";
 }();
 
 Job job_of(SQLite::Statement& row);

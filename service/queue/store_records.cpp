@@ -1,5 +1,7 @@
 // The runs of a job as the records of a study: what statistics and tables are made of.
 
+#include <cmath>
+
 #include "queue/rows.hpp"
 #include "queue/store.hpp"
 
@@ -34,7 +36,7 @@ void Store::for_each_record(std::int64_t job, bool floor, const std::function<vo
       const Run run = run_of(query);
       Record record = run.result.value_or(Record{.index = run.key.index});
       if (run.failure) record.reason = run.failure->reason;
-      if (record.captured_variance == 0.0) record.captured_variance = captured_variance;
+      if (std::isnan(record.captured_variance)) record.captured_variance = captured_variance;
       take(record);
     }
   });

@@ -114,17 +114,11 @@ bool Store::is_current(const Claim& claim) {
 
 bool Store::accept(const Claim& claim, const Record& result) {
   return db_.write([&](SQLite::Database& db) {
-    std::string set = "UPDATE runs SET state = 'done', ";
-    for (const Measure& measure : measure_table) set += measure.key + std::string(" = ?, ");
-    Statement update(
-        db,
-        set + "mean_friction_angle_deg = ?, captured_variance = ?, steps = ?, wall_clock_s = ?, digest = ?" + current);
+    std::string set;
+    visit_numbers(result, [&](const char* key, const std::string&, auto) { set += key + std::string(" = ?, "); });
+    Statement update(db, "UPDATE runs SET state = 'done', " + set + "digest = ?" + current);
     int i = 1;
-    for (const Measure& measure : measure_table) update.bind(i++, result.measures.*measure.member);
-    update.bind(i++, result.mean_phi_deg);
-    update.bind(i++, result.captured_variance);
-    update.bind(i++, result.steps);
-    update.bind(i++, result.wall_clock);
+    visit_numbers(result, [&](const char*, const std::string&, auto value) { update.bind(i++, value); });
     update.bind(i++, result.digest);
     bind_claim(update, i, claim);
     if (update.exec() != 1) return false;

@@ -6,7 +6,7 @@
 
 #include "random_field/field_spec.hpp"
 #include "simulation/model.hpp"
-#include "study/spec.hpp"
+#include "study/plan.hpp"
 
 namespace talus {
 

@@ -18,7 +18,6 @@
 #include "cli/help.hpp"
 #include "cli/schemas.hpp"
 #include "cli/verbs.hpp"
-#include "cli/version.hpp"
 #include "simulation/simulation.hpp"
 
 namespace talus::cli {
@@ -243,12 +242,12 @@ Exit bench(BenchOptions o) {
   const Json document = load_document(o);
   // Of the default sizes the paper's is the base.
   const double base = std::ranges::count(o.sizes, 17e3) ? 17e3 : o.sizes.front();
-  Json out = {{"version", version()},         {"compiler", TALUS_COMPILER},
+  Json out = {{"version", version},           {"compiler", TALUS_COMPILER},
               {"processor", processor()},     {"cores", std::thread::hardware_concurrency()},
               {"case", document.at("title")}, {"from_s", o.from},
               {"runs", Json::array()}};
   if (!o.json) {
-    std::printf("talus %s, %s, %s with %u cores; case \"%s\" from %g s\n", version().c_str(), TALUS_COMPILER,
+    std::printf("talus %s, %s, %s with %u cores; case \"%s\" from %g s\n", version.c_str(), TALUS_COMPILER,
                 processor().c_str(), std::thread::hardware_concurrency(),
                 document.at("title").get<std::string>().c_str(), o.from);
     print_header();

@@ -11,13 +11,12 @@
 #include "case/load.hpp"
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
-#include "cli/version.hpp"
 #include "cli/xi_file.hpp"
 #include "figures/profile.hpp"
 #include "io/vtkhdf.hpp"
 #include "math/angle.hpp"
-#include "monte_carlo/realization.hpp"
 #include "random_field/random_field.hpp"
+#include "run/realization.hpp"
 #include "support/seed.hpp"
 
 namespace talus::cli {
@@ -124,7 +123,7 @@ Exit field(const FieldOptions& options) {
   const ParticlePlan plan = plan_particles(problem.model);
   const Strength soil_strength = strength(problem.model, problem.field, problem.study, plan, identity);
   const FieldOnParticles on_particles = field_on(plan, soil_strength);
-  std::string source = "Talus " + version();
+  std::string source = "Talus " + version;
   if (identity.realization) source += "  ·  seed " + std::to_string(identity.seed);
   source += "  ·  case " + loaded.hash;
   if (!options.out.empty())
@@ -143,14 +142,6 @@ Exit field(const FieldOptions& options) {
   return Exit::ok;
 }
 
-std::string known_ending(const std::string& path) {
-  const fs::path ending = fs::path(path).extension();
-  for (const char* known : {".csv", ".vtkhdf", ".svg", ".png"}) {
-    if (ending == known) return {};
-  }
-  return path + " must end in .csv, .vtkhdf, .svg or .png";
-}
-
 }  // namespace
 
 void add_field(CLI::App& app, Action& action) {
@@ -160,7 +151,7 @@ void add_field(CLI::App& app, Action& action) {
   add_case(*verb, options->case_file);
   verb->add_option("--out", options->out, "Output file; the format is taken from the extension; optional with --json")
       ->type_name("FILE")
-      ->check(known_ending);
+      ->check(has_ending({".csv", ".vtkhdf", ".svg", ".png"}));
   auto* realization = verb->add_option("--realization", options->realization,
                                        "Index of the realization, from 0; without it the median field")
                           ->check(CLI::NonNegativeNumber);

@@ -1,6 +1,5 @@
 // talus study: many realizations, each a process of its own, and what they say together.
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,12 +14,12 @@
 #include "case/load.hpp"
 #include "case/study_plan.hpp"
 #include "cli/help.hpp"
+#include "cli/progress.hpp"
 #include "cli/signals.hpp"
 #include "cli/verbs.hpp"
-#include "cli/version.hpp"
 #include "executor/slurm.hpp"
+#include "executor/slurm_batch.hpp"
 #include "figures/figures.hpp"
-#include "study/paths.hpp"
 #include "study/run_study.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
@@ -46,11 +45,6 @@ struct StudyOptions {
   fs::path slurm;  ///< configuration of it; empty: all as it comes
   bool json = false, retry_failed = false, no_figures = false, prepare = false;
 };
-
-int terminal_width() {
-  winsize size{};
-  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
 
 /// Progress on stderr: one line that is redrawn on a terminal, a plain line now and then elsewhere.
 class Reporter {
@@ -142,13 +136,7 @@ void draw_figures(const fs::path& directory) try {
 
 void print(const fs::path& directory, bool json) {
   const std::string text = read_file(StudyPaths{directory}.summary(), max_summary_bytes);
-  if (json) {
-    std::cout << text;
-    return;
-  }
-  const auto study = nlohmann::ordered_json::parse(text);
-  std::cout << summary_table(study) << "\ninfluence zone [m]\n"
-            << text_histogram(study.at("quantities").at("influence_zone_m"), 80);
+  std::cout << (json ? text : study_report(Json::parse(text)));
 }
 
 Exit exit_code(StudyEnd end) {
@@ -164,8 +152,8 @@ Exit study(const StudyOptions& options) try {
   std::vector<std::string> overrides = options.overrides;
   if (options.realizations) overrides.push_back("study.realizations=" + std::to_string(*options.realizations));
   LoadedCase loaded = load_case(options.case_file, overrides);
-  for (const Fault& w : loaded.warnings) std::cerr << "warning: " << w.pointer << " " << w.message << "\n";
-  const Plan plan = make_plan(loaded, choose_seed(options, loaded.value), version());
+  print_warnings(loaded.warnings);
+  const Plan plan = make_plan(loaded, choose_seed(options, loaded.value), version);
   loaded.resolved["study"]["seed"] = plan.seed;
   if (options.prepare) {
     prepare_study(plan, loaded.resolved, options.out);
@@ -231,6 +219,16 @@ void add_study(CLI::App& app, Action& action) {
   verb->callback([options, &action] {
     if (options->executor == "slurm") options->out = fs::absolute(options->out);  // tasks begin in another directory
     action = [options] { return study(*options); };
+  });
+}
+
+/// What `--executor slurm` lets Slurm start on its machines.
+void add_array_task(CLI::App& app, Action& action) {
+  const auto batch = std::make_shared<fs::path>();
+  CLI::App* verb = app.add_subcommand("array-task", "execute the runs of one task of an array job")->group("");
+  verb->add_option("batch", *batch, "directory of the batch")->required();
+  verb->callback([batch, &action] {
+    action = [batch] { return static_cast<Exit>(executor::execute_array_task(executor::BatchDirectory(*batch))); };
   });
 }
 

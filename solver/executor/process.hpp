@@ -6,20 +6,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "support/error.hpp"
+
 namespace talus::executor {
-
-/// A program could not be started, or a file of its could not be made.
-struct ProcessError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-  int error = 0;  ///< errno
-};
-
-/// @throws ProcessError "cannot DOING PATH: " and what errno `error` means
-[[noreturn]] void fail(const std::string& doing, const std::filesystem::path& path, int error);
 
 /// What a process may use at most; 0: no limit.
 struct Limits {
@@ -48,7 +40,7 @@ struct ProcessEnd {
 /// when the object goes while it still runs.
 class Process {
  public:
-  /// @throws ProcessError when a file cannot be created or the program cannot be started
+  /// @throws IoError when a file cannot be created or the program cannot be started
   Process(const Command& command, const std::filesystem::path& out, const std::filesystem::path& err);
   ~Process();
   Process(Process&& other) noexcept;

@@ -146,7 +146,7 @@ void SlurmExecutor::take_in(Batch& batch, RunPlace place) {
     const RunStatus status = batch.directory.status(place);
     if (status.end.exit_code == 0 && status.end.signal == 0) times_.ended(entry.run.group, status.seconds);
     end(entry, {.end = status.end, .resumed = status.resumed, .timed_out = status.timed_out, .why = status.why});
-  } catch (const BatchError& e) {  // read again; if it stays so, the task will be gone and the run lost
+  } catch (const IoError& e) {  // read again; if it stays so, the task will be gone and the run lost
     if (!std::exchange(entry.told, true)) note_(e.what());
   }
 }

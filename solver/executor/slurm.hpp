@@ -93,6 +93,7 @@ class SlurmExecutor final : public Executor {
   bool take_over(const Run& run, RunId id);
   // slurm_calls.cpp: Slurm's programs
   void end_calls();
+  static std::string answer(const Call& call, const ProcessEnd& end);
   void submitted(const Call& call, const ProcessEnd& end);
   void not_submitted(const std::string& why);
   void queue_seen(const Call& call, const ProcessEnd& end);

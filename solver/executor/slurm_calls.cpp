@@ -1,20 +1,16 @@
 // sbatch, squeue and scancel: called in the background, their output checked.
 
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <cstring>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <utility>
 
 #include "executor/slurm.hpp"
-
-extern "C" char** environ;
+#include "support/files.hpp"
 
 namespace talus::executor {
 namespace {
@@ -41,13 +37,6 @@ std::vector<std::string> environment() {
   return all;
 }
 
-std::string content(const fs::path& path) {
-  std::error_code error;
-  if (fs::file_size(path, error) > max_answer || error) return {};
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 /// Sorts by time, and differs from every other.
 std::string batch_name() {
   static int counter = 0;
@@ -56,12 +45,6 @@ std::string batch_name() {
   std::snprintf(text, sizeof text, "%012llx-%04x-%08x", static_cast<unsigned long long>(std::time(nullptr)),
                 counter++ & 0xffff, entropy());
   return text;
-}
-
-std::string complaint(const fs::path& err, const ProcessEnd& end) {
-  const std::string said = last_line(tail(err, 4000));
-  if (!said.empty()) return said;
-  return end.signal ? "killed: " + signal_text(end.signal) : "exit code " + std::to_string(end.exit_code);
 }
 
 }  // namespace
@@ -93,28 +76,37 @@ void SlurmExecutor::end_calls() {
   }
 }
 
+/// What a program said that ended well.
+std::string SlurmExecutor::answer(const Call& call, const ProcessEnd& end) {
+  if (end.signal == 0 && end.exit_code == 0) return read_file(call.out, max_answer);
+  std::string why = last_line(tail(call.err, 4000));
+  if (why.empty())
+    why = end.signal ? "killed: " + signal_text(end.signal) : "exit code " + std::to_string(end.exit_code);
+  throw IoError(call.out.stem().string() + ": " + why);
+}
+
 void SlurmExecutor::queue_seen(const Call& call, const ProcessEnd& end) try {
-  if (end.signal != 0 || end.exit_code != 0) throw SlurmAnswerError("squeue: " + complaint(call.err, end));
-  queue_.emplace(content(call.out));
+  queue_.emplace(answer(call, end));
   queue_begun_ = call.begin;
   next_cycle_ = {};
   answered_since_ = true;
   if (std::exchange(away_, false)) note_("Slurm answers again");
-} catch (const SlurmAnswerError& e) {
+} catch (const IoError& e) {
   if (!std::exchange(away_, true)) note_(std::string(e.what()) + "; waiting for Slurm");
 }
 
 /// sbatch has come back.
-void SlurmExecutor::submitted(const Call& call, const ProcessEnd& end) try {
-  if (end.signal != 0 || end.exit_code != 0) throw SlurmAnswerError("sbatch: " + complaint(call.err, end));
+void SlurmExecutor::submitted(const Call& call, const ProcessEnd& end) {
   Batch& batch = *submitting_;
-  batch.job = parse_job_id(content(call.out));
+  try {
+    batch.job = parse_job_id(answer(call, end));
+  } catch (const IoError& e) {
+    return not_submitted(e.what());
+  }
   batch.since = Steady::now();
   submitting_ = nullptr;
   refusals_ = 0;
   batch.directory.write_job(*batch.job);
-} catch (const SlurmAnswerError& e) {
-  not_submitted(e.what());
 }
 
 /// Its directory goes first: should Slurm have taken the job all the same, its tasks find nothing to do.
@@ -140,7 +132,7 @@ void SlurmExecutor::not_submitted(const std::string& why) {
   }
   if (refusals_ < most_refusals || !answered_since_ || open_tasks() > 0) return;
   refusals_ = 0;
-  throw ProcessError("Slurm takes no runs: " + why);
+  throw IoError("Slurm takes no runs: " + why);
 }
 
 /// Takes from what waits, in order: of each group its own tasks, since their runs take unlike long.
@@ -210,7 +202,7 @@ void SlurmExecutor::submit() {
   try {
     batch.directory.write(runs);
     sbatch_.emplace(call(sbatch_arguments(batch.directory, runs.size())));
-  } catch (const ProcessError& e) {
+  } catch (const IoError& e) {
     not_submitted(e.what());
   }
   next_submit_ = std::max(next_submit_, Steady::now() + poll_);

@@ -5,15 +5,9 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <stdexcept>
 #include <string>
 
 namespace talus::executor {
-
-/// An answer of Slurm that cannot be understood.
-struct SlurmAnswerError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// An array task as the queue has it.
 struct QueuedTask {
@@ -27,7 +21,7 @@ struct QueuedTask {
 class SlurmQueue {
  public:
   /// @param json  output of `squeue --json` of Slurm 22.05 or newer
-  /// @throws SlurmAnswerError naming the place
+  /// @throws IoError naming the place
   explicit SlurmQueue(const std::string& json);
 
   /// Nothing where Slurm does not know it: never submitted, or ended long ago.
@@ -46,7 +40,7 @@ class SlurmQueue {
 };
 
 /// The job of sbatch's answer: "123" or "123;cluster".
-/// @throws SlurmAnswerError
+/// @throws IoError
 std::int64_t parse_job_id(const std::string& answer);
 
 /// "0-2,5,7-11:2%4" as numbers; nothing where it is cut short with dots or cannot be understood.

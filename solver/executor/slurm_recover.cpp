@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "executor/slurm.hpp"
+#include "support/files.hpp"
 
 namespace talus::executor {
 namespace {
@@ -19,7 +20,7 @@ void SlurmExecutor::recover() {
   std::vector<fs::path> left;
   for (fs::directory_iterator entry(directory_, error), end; !error && entry != end; entry.increment(error))
     if (entry->is_directory()) left.push_back(entry->path());
-  if (error) throw ProcessError("cannot read " + directory_.string() + ": " + error.message());
+  if (error) throw_io_error("read", directory_, error.value());
   std::sort(left.begin(), left.end());
   for (const fs::path& path : left) recover(path);
 }
@@ -34,7 +35,7 @@ void SlurmExecutor::recover(const fs::path& path) {
       Task& task = batch.tasks.emplace_back();
       for (const Run& run : *runs) task.entries.push_back({.run = run});
     }
-  } catch (const BatchError& e) {  // its tasks cannot read it either
+  } catch (const IoError& e) {  // its tasks cannot read it either
     note_(e.what());
     batch.tasks.clear();
     return;

@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 
 #include "support/csv.hpp"
 #include "support/error.hpp"
@@ -15,51 +14,35 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t max_csv_bytes = std::size_t{1} << 30;
-constexpr std::size_t columns = 2 + measure_table.size() + 6;
+constexpr std::size_t numbers = measure_table.size() + covariate_table.size();
+constexpr std::size_t columns = 2 + numbers + 2;  ///< index and status; digest and reason
 
-/// The fields of one line as values, from left to right.
-class Fields {
- public:
-  Fields(const std::vector<std::string>& all, const std::string& place) : all_(all), place_(place) {
-    if (all_.size() != columns)
-      fail("has " + std::to_string(all_.size()) + " fields instead of " + std::to_string(columns));
-  }
-  std::string text() { return all_[next_++]; }
-  template <class T>
-  T number() {
-    const std::string& field = all_[next_++];
-    T value{};
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(static_cast<double>(value)))
-      fail("field " + std::to_string(next_) + ": \"" + field + "\" is not a number");
-    return value;
-  }
-  [[noreturn]] void fail(const std::string& why) const { throw IoError(place_ + " " + why); }
+/// The number of a field; `fail` is told what is wrong with it.
+template <class Number, class Fail>
+void read_number(const std::string& field, Number& value, const Fail& fail) {
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(static_cast<double>(value)))
+    fail(in_quotes(field) + " is not a number");
+}
 
- private:
-  const std::vector<std::string>& all_;
-  const std::string& place_;
-  std::size_t next_ = 0;
-};
-
-Record record(Fields fields) {
+Record record(const std::vector<std::string>& fields, const std::string& place) {
+  const auto fail = [&](const std::string& why) { throw IoError(place + " " + why); };
+  if (fields.size() != columns)
+    fail("has " + std::to_string(fields.size()) + " fields instead of " + std::to_string(columns));
+  std::size_t at = 0;
+  const auto fail_at = [&](const std::string& why) { fail("field " + std::to_string(at + 1) + ": " + why); };
   Record r;
-  r.index = fields.number<std::int64_t>();
-  const std::string status = fields.text();
-  if (status != "done" && status != "failed")
-    fields.fail("has the status \"" + status + "\", which is neither done nor failed");
-  r.done = status == "done";
-  if (!r.done) {
-    for (std::size_t i = 2; i + 1 < columns; ++i) fields.text();
-    r.reason = fields.text();
-    return r;
-  }
-  for (const Measure& measure : measure_table) r.measures.*measure.member = fields.number<double>();
-  r.mean_phi_deg = fields.number<double>();
-  r.captured_variance = fields.number<double>();
-  r.steps = fields.number<std::int64_t>();
-  r.wall_clock = fields.number<double>();
-  r.digest = fields.text();
+  read_number(fields[0], r.index, fail_at);
+  r.done = fields[1] == "done";
+  if (!r.done && fields[1] != "failed") fail("has the status \"" + fields[1] + "\", which is neither done nor failed");
+  r.reason = fields.back();
+  if (!r.done) return r;
+  at = 2;
+  visit_numbers(r, [&](const char*, const std::string&, auto& value) {
+    read_number(fields[at], value, fail_at);
+    ++at;
+  });
+  r.digest = fields[at];
   return r;
 }
 
@@ -67,16 +50,16 @@ Record record(Fields fields) {
 
 std::string csv_header(const std::string& index_name) {
   std::string line = index_name + ",status";
-  for (const Measure& measure : measure_table) line += std::string(",") + measure.key;
-  return line + ",mean_friction_angle_deg,captured_variance,steps,wall_clock_s,digest,reason\n";
+  const Record any;
+  visit_numbers(any, [&](const char* key, const std::string&, auto) { line += std::string(",") + key; });
+  return line + ",digest,reason\n";
 }
 
 std::string csv_line(const Record& record) {
-  std::string text = std::to_string(record.index) + (record.done ? ",done" : ",failed");
-  if (!record.done) return text + std::string(measure_table.size() + 5, ',') + ',' + csv_quoted(record.reason) + '\n';
-  for (const Measure& measure : measure_table) text += ',' + to_text(record.measures.*measure.member);
-  return text + ',' + to_text(record.mean_phi_deg) + ',' + to_text(record.captured_variance) + ',' +
-         std::to_string(record.steps) + ',' + to_text(record.wall_clock) + ',' + record.digest + ",\n";
+  std::string line = std::to_string(record.index) + (record.done ? ",done" : ",failed");
+  if (!record.done) return line + std::string(numbers + 2, ',') + csv_quoted(record.reason) + '\n';
+  visit_numbers(record, [&](const char*, const std::string&, auto value) { line += ',' + to_text(value); });
+  return line + ',' + record.digest + ",\n";
 }
 
 std::string to_csv(const std::vector<Record>& records, const std::string& index_name) {
@@ -95,7 +78,7 @@ std::vector<Record> read_csv(const fs::path& path, const std::string& index_name
     throw IoError(place() + " is not the header of a table of Talus: expected " + header.substr(0, header.size() - 1));
   std::vector<Record> records;
   while (rows.next()) {
-    records.push_back(record(Fields(rows.fields(), place())));
+    records.push_back(record(rows.fields(), place()));
     if (records.size() > 1 && records.back().index <= records[records.size() - 2].index)
       throw IoError(place() + " has the " + index_name + " " + std::to_string(records.back().index) +
                     " out of order, or twice");

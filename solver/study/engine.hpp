@@ -41,7 +41,7 @@ class Engine {
   /// @throws what the store throws
   bool record_ended();
   /// Starts runs while the executor has room and the store has runs.
-  /// @throws IoError where the disk is full; ProcessError, and what the store throws
+  /// @throws IoError where the disk is full or a process cannot be started, and what the store throws
   void start_runs();
   /// Renews the claims of all runs under way, and kills the runs whose claim is lost.
   void renew_claims();

@@ -1,12 +1,8 @@
 #include "study/publish.hpp"
 
 #include <algorithm>
-#include <cstdint>
 
 #include "study/csv.hpp"
-#include "study/estimator.hpp"
-#include "study/summary.hpp"
-#include "support/atomic_file.hpp"
 #include "support/files.hpp"
 #include "support/output_directory.hpp"
 
@@ -52,11 +48,6 @@ void compare(const Plan& a, const Plan& b, const fs::path& first, const fs::path
 }
 
 }  // namespace
-
-std::vector<Record> counted(const Plan& plan, const std::vector<Record>& runs) {
-  const auto stop = stopping_size(plan, runs);
-  return {runs.begin(), stop ? runs.begin() + *stop : runs.end()};
-}
 
 StudySummary publish(const StudyPaths& paths, const Plan& plan, const RecordSource& runs, const RecordSource& floor) {
   StudySummary summary(plan);
@@ -122,7 +113,7 @@ void write_merged(const fs::path& out, const Tables& tables, const fs::path& ori
   OutputDirectory claimed(out, OutputKind::study, tables.plan.case_hash, true);
   write_file_atomically(StudyPaths{out}.resolved_case(), resolved_case);
   write_plan(out, tables.plan);
-  write_tables(StudyPaths{out}, tables.plan, counted(tables.plan, tables.runs), tables.floor);
+  write_tables(StudyPaths{out}, tables.plan, tables.runs, tables.floor);
   claimed.mark_finished();
 }
 

@@ -1,12 +1,14 @@
 #pragma once
 // What became of one run.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 
-#include "study/paths.hpp"
+#include "study/run_key.hpp"
 #include "support/error.hpp"
 #include "support/measures.hpp"
 
@@ -23,7 +25,32 @@ struct Record {
   double wall_clock = 0.0;  ///< [s]
   std::string digest = {};  ///< of the final state
   std::string reason = {};  ///< why it failed, one line; empty if done
+
+  /// [m]; unset: it failed
+  std::optional<double> influence_zone() const { return done ? std::optional(measures.influence_zone) : std::nullopt; }
 };
+
+/// A number of a run beside its measures: what it drew, and what it cost.
+struct Covariate {
+  const char* key;      ///< in the tables, and as SQL column
+  const char* pointer;  ///< in result.json
+  std::variant<double Record::*, std::int64_t Record::*> member;
+};
+inline constexpr std::array covariate_table{
+    Covariate{"mean_friction_angle_deg", "/field/mean_friction_angle_deg", &Record::mean_phi_deg},
+    Covariate{"captured_variance", "/field/captured_variance", &Record::captured_variance},
+    Covariate{"steps", "/steps", &Record::steps}, Covariate{"wall_clock_s", "/wall_clock_s", &Record::wall_clock}};
+
+/// Calls `use(key, pointer, value)` for every number of a record, in the order of the tables and of the SQL columns:
+/// the measures, then the covariates.
+template <class AnyRecord, class Use>
+void visit_numbers(AnyRecord& record, const Use& use) {
+  for (const Measure& measure : measure_table)
+    use(measure.key, "/" + std::string(measure.key), record.measures.*measure.member);
+  for (const Covariate& covariate : covariate_table)
+    std::visit([&](auto member) { use(covariate.key, std::string(covariate.pointer), record.*member); },
+               covariate.member);
+}
 
 /// Why a run failed.
 struct Failure {

@@ -45,7 +45,7 @@ inline Plan example_plan(int planned, const std::string& title = "Example") {
 /// Writes study.json and realizations.csv.
 inline void write_example_study(const std::filesystem::path& directory, const Plan& plan,
                                 const std::vector<Record>& runs, const std::vector<Record>& floor) {
-  write_file_atomically(directory / "study.json", summarize(plan, runs, floor).dump(2));
+  write_file_atomically(directory / "study.json", summary_of(plan, runs, floor).json().dump(2));
   write_file_atomically(directory / "realizations.csv", to_csv(runs, "index"));
 }
 
