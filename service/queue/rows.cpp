@@ -57,7 +57,7 @@ Run run_of(SQLite::Statement& row) {
   run.crashes = row.getColumn(i++).getInt64();
   if (run.state == RunState::done) {
     Record result{.index = run.key.index, .done = true};
-    visit_numbers(result, [&](const char*, const std::string&, auto& number) {
+    visit_numbers(result, [&](const char*, const char*, auto& number) {
       const SQLite::Column value = row.getColumn(i++);
       if constexpr (std::is_same_v<decltype(number), std::int64_t&>)
         number = value.getInt64();

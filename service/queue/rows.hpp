@@ -16,7 +16,7 @@ inline constexpr const char* job_columns =
 inline const std::string run_columns = [] {
   std::string columns = "job, floor, idx, state, attempt, crashes, ";
   const Record any;
-  visit_numbers(any, [&](const char* key, const std::string&, auto) { columns += key + std::string(", "); });
+  visit_numbers(any, [&](const char* key, const char*, auto) { columns += key + std::string(", "); });
   return columns + "digest, reason, exit_code, signal, log_tail";
 }();
 

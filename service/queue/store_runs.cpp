@@ -115,10 +115,10 @@ bool Store::is_current(const Claim& claim) {
 bool Store::accept(const Claim& claim, const Record& result) {
   return db_.write([&](SQLite::Database& db) {
     std::string set;
-    visit_numbers(result, [&](const char* key, const std::string&, auto) { set += key + std::string(" = ?, "); });
+    visit_numbers(result, [&](const char* key, const char*, auto) { set += key + std::string(" = ?, "); });
     Statement update(db, "UPDATE runs SET state = 'done', " + set + "digest = ?" + current);
     int i = 1;
-    visit_numbers(result, [&](const char*, const std::string&, auto value) { update.bind(i++, value); });
+    visit_numbers(result, [&](const char*, const char*, auto value) { update.bind(i++, value); });
     update.bind(i++, result.digest);
     bind_claim(update, i, claim);
     if (update.exec() != 1) return false;

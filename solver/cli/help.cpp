@@ -194,6 +194,14 @@ void print_warnings(const std::vector<Fault>& warnings) {
   for (const Fault& w : warnings) std::cerr << "warning: " << w.pointer << " " << w.message << "\n";
 }
 
+void draw_figures(const std::filesystem::path& directory,
+                  std::vector<std::filesystem::path> (*draw)(const std::filesystem::path&)) try {
+  draw(directory);
+  std::cerr << "figures: " << (directory / "figures").string() << "\n";
+} catch (const IoError& e) {
+  std::cerr << "no figures: " << e.what() << "\n";
+}
+
 std::string usage_message(const CLI::App& app, const std::vector<std::string>& arguments,
                           const CLI::ParseError& error) {
   if (arguments.empty()) return "a command is required; talus --help lists them";

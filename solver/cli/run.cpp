@@ -80,14 +80,6 @@ void print_summary(const RunResult& r, std::uint64_t seed) {
               r.threads, r.threads == 1 ? "" : "s", r.digest.c_str());
 }
 
-/// The run itself is done; figures that cannot be drawn are no reason to fail.
-void draw_figures(const fs::path& directory) try {
-  plot_run(directory);
-  std::cerr << "figures: " << (directory / "figures").string() << "\n";
-} catch (const IoError& e) {
-  std::cerr << "no figures: " << e.what() << "\n";
-}
-
 Exit run(const RunOptions& options) {
   if (options.study_worker && !die_with_parent()) return Exit::interrupted;
   const bool verbose = !options.json && !options.study_worker;
@@ -122,7 +114,7 @@ Exit run(const RunOptions& options) {
     std::cerr
         << "warning: " << outcome.result.penetrated
         << " particles passed through a wall: do not trust this run; try a smaller time step or more wall layers\n";
-  if (options.figures) draw_figures(options.out);
+  if (options.figures) draw_figures(options.out, plot_run);
   return Exit::ok;
 }
 

@@ -42,7 +42,7 @@ struct StudyOptions {
   std::vector<std::int64_t> range;  ///< first and last, both included
   int threads = 1;
   std::string executor = "local";
-  fs::path slurm;  ///< configuration of it; empty: all as it comes
+  fs::path slurm;  ///< its configuration; empty: the defaults
   bool json = false, retry_failed = false, no_figures = false, prepare = false;
 };
 
@@ -52,24 +52,22 @@ class Reporter {
   void show(const Progress& progress) {
     if (terminal_)
       std::cerr << "\r" << painted(progress_bar(progress, terminal_width() - 1)) << "\033[K" << std::flush;
-    else if (const auto now = Clock::now(); differs(progress) && now - shown_ >= std::chrono::seconds(10)) {
+    else if (const auto now = Clock::now(); differs(progress) && now - shown_at_ >= std::chrono::seconds(10)) {
       std::cerr << progress_line(progress) << "\n";
-      shown_ = now;
-      made_ = progress.made_now;
-      pending_reason_ = progress.pending_reason;
+      shown_at_ = now;
+      shown_ = progress;
     }
     last_ = progress;
   }
   void note(const std::string& text) { std::cerr << (terminal_ ? "\r\033[K" : "") << text << "\n"; }
   /// Leaves the last state on a line of its own.
-  void finish() {
-    if (last_) note(progress_line(*std::exchange(last_, std::nullopt)));
+  ~Reporter() {
+    if (last_) note(progress_line(*last_));
   }
-  ~Reporter() { finish(); }
 
  private:
   bool differs(const Progress& progress) const {
-    return progress.made_now != made_ || progress.pending_reason != pending_reason_;
+    return progress.made_now != shown_.made_now || progress.pending_reason != shown_.pending_reason;
   }
   /// The bar in green, where colours are wanted (https://no-color.org).
   static std::string painted(const std::string& line) {
@@ -81,9 +79,8 @@ class Reporter {
 
   bool terminal_ = ::isatty(STDERR_FILENO) != 0;
   std::optional<Progress> last_;
-  std::int64_t made_ = 0;  ///< as shown last, and so on
-  std::string pending_reason_;
-  Clock::time_point shown_ = Clock::now();
+  Progress shown_;  ///< the last one that was shown
+  Clock::time_point shown_at_ = Clock::now();
 };
 
 /// --seed, else the case's, else that of the study already begun in --out, else random_seed().
@@ -126,14 +123,6 @@ RunStudyOptions run_options(const StudyOptions& options, const Plan& plan, Repor
   return run;
 }
 
-/// The study itself is done; figures that cannot be drawn are no reason to fail.
-void draw_figures(const fs::path& directory) try {
-  plot_study(directory);
-  std::cerr << "figures: " << StudyPaths{directory}.figures().string() << "\n";
-} catch (const IoError& e) {
-  std::cerr << "no figures: " << e.what() << "\n";
-}
-
 void print(const fs::path& directory, bool json) {
   const std::string text = read_file(StudyPaths{directory}.summary(), max_summary_bytes);
   std::cout << (json ? text : study_report(Json::parse(text)));
@@ -171,7 +160,7 @@ Exit study(const StudyOptions& options) try {
   if (end == StudyEnd::too_many_failed)
     std::cerr << "more realizations failed than study.max_failed_share = " << plan.study.max_failed_share
               << " allows; see " << StudyPaths{options.out}.realizations().string() << "\n";
-  if (end != StudyEnd::interrupted && !options.no_figures) draw_figures(options.out);
+  if (end != StudyEnd::interrupted && !options.no_figures) draw_figures(options.out, plot_study);
   print(options.out, options.json);
   return code;
 } catch (const executor::SlurmConfigError& e) {

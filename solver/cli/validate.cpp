@@ -12,12 +12,11 @@
 #include "particles/geometry.hpp"
 #include "random_field/random_field.hpp"
 #include "simulation/simulation.hpp"
+#include "support/json.hpp"
 #include "support/run_memory.hpp"
 
 namespace talus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ValidateOptions {
   std::filesystem::path case_file;

@@ -1,5 +1,5 @@
 #pragma once
-// A child process with an owner.
+// A child process that ends with the object that owns it.
 
 #include <sys/types.h>
 
@@ -24,7 +24,7 @@ struct Limits {
 
 struct Command {
   std::vector<std::string> arguments;  ///< the program first; without a slash it is searched in PATH
-  std::optional<std::vector<std::string>> environment = {};  ///< "NAME=value"; unset: ours
+  std::optional<std::vector<std::string>> environment = {};  ///< "NAME=value"; unset: that of this process
   Limits limits = {};
   int niceness = 0;
 };
@@ -32,7 +32,7 @@ struct Command {
 /// How a process ended.
 struct ProcessEnd {
   int exit_code = 0;  ///< meaningless if killed
-  int signal = 0;     ///< that killed it; 0: it left by itself
+  int signal = 0;     ///< that killed it; 0: it exited
 };
 
 /// A running child: in its own process group, so that Ctrl-C at the terminal reaches only its parent; stdin empty,
@@ -63,7 +63,7 @@ std::string signal_text(int number);
 /// The last `max_bytes` of a text file; empty where it cannot be read.
 std::string tail(const std::filesystem::path& path, std::size_t max_bytes);
 
-/// The last line that says something.
+/// The last line that is not blank.
 std::string last_line(std::string text);
 
 }  // namespace talus::executor

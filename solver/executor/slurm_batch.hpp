@@ -4,11 +4,11 @@
 //   task.sh      the job script: executes its arguments
 //   I.json       the runs of array task I, one after the other
 //   I-P.status   how run P of it ended
-//   I-P.kill     run P is not wanted any more
+//   I-P.kill     run P is to be killed
 //   I.log        stdout and stderr of the task
 //   job          the number of the array job
 //
-// Every file appears whole, by rename. Who removes the directory takes the runs away from tasks that begin late.
+// Every file is written atomically. Once the directory is removed, tasks that start later find nothing to do.
 
 #include <filesystem>
 #include <optional>
@@ -26,7 +26,7 @@ struct RunStatus {
   double seconds = 0.0;  ///< wall clock of this process
   bool resumed = false;
   bool timed_out = false;
-  std::string why = {};  ///< where it could not even be started
+  std::string why = {};  ///< why it could not be started
 };
 
 /// A run of a batch by array task and place in it.
@@ -59,7 +59,7 @@ class BatchDirectory {
   bool is_killed(RunPlace run) const;
 
   void write_job(std::int64_t job) const;
-  /// Nothing where it is not there or not a number.
+  /// Unset if the file is missing or does not hold a number.
   std::optional<std::int64_t> job() const;
 
  private:

@@ -17,13 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds most_patience{120};  ///< with one call
+constexpr std::chrono::seconds most_patience{120};  ///< maximum duration of one call
 constexpr std::size_t max_answer = std::size_t{1} << 30;
 constexpr int most_refusals = 3;
 constexpr std::size_t most_tasks = 1000;  ///< of an array job; Slurm's own default allows 1001
 constexpr std::size_t most_runs = 5000;   ///< of an array job, so that its directory stays quick to read
 
-/// What Slurm's programs, and through them the runs, get of our environment.
+/// The environment variables that Slurm's programs, and through them the runs, inherit.
 std::vector<std::string> environment() {
   constexpr std::array exact{"PATH",   "HOME", "USER",       "LOGNAME",         "LANG",
                              "LC_ALL", "TZ",   "SLURM_CONF", "LD_LIBRARY_PATH", "TALUS_SIMD"};
@@ -37,7 +37,7 @@ std::vector<std::string> environment() {
   return all;
 }
 
-/// Sorts by time, and differs from every other.
+/// A unique name; names sort by time.
 std::string batch_name() {
   static int counter = 0;
   std::random_device entropy;
@@ -76,7 +76,7 @@ void SlurmExecutor::end_calls() {
   }
 }
 
-/// What a program said that ended well.
+/// The output of a program that succeeded. @throws IoError with its last line on stderr otherwise
 std::string SlurmExecutor::answer(const Call& call, const ProcessEnd& end) {
   if (end.signal == 0 && end.exit_code == 0) return read_file(call.out, max_answer);
   std::string why = last_line(tail(call.err, 4000));
@@ -109,7 +109,7 @@ void SlurmExecutor::submitted(const Call& call, const ProcessEnd& end) {
   batch.directory.write_job(*batch.job);
 }
 
-/// Its directory goes first: should Slurm have taken the job all the same, its tasks find nothing to do.
+/// Removes the directory first: if Slurm did accept the job, its tasks find nothing to do.
 void SlurmExecutor::not_submitted(const std::string& why) {
   std::error_code ignored;
   fs::remove_all(submitting_->directory.path(), ignored);
@@ -135,7 +135,7 @@ void SlurmExecutor::not_submitted(const std::string& why) {
   throw IoError("Slurm takes no runs: " + why);
 }
 
-/// Takes from what waits, in order: of each group its own tasks, since their runs take unlike long.
+/// Takes waiting runs in order. A task has runs of one group only, since runs of different groups differ in duration.
 std::vector<std::vector<SlurmExecutor::Entry>> SlurmExecutor::next_tasks(std::size_t free) {
   std::map<std::string, std::size_t> waits;
   for (const Entry& entry : waiting_) ++waits[entry.run.group];
@@ -215,7 +215,7 @@ void SlurmExecutor::ask_queue() {
   squeue_.emplace(call({"squeue", "--json", "--states=all"}));  // newer ones leave out what has ended
 }
 
-/// Again and again until they are gone: the controller may have been away.
+/// Repeated until the tasks are gone, since the controller may have been unavailable.
 void SlurmExecutor::cancel_unwanted() {
   if (scancel_ || Steady::now() < next_cancel_) return;
   std::vector<std::string> arguments{"scancel"};

@@ -15,10 +15,10 @@ using Json = nlohmann::json;
 
 constexpr std::int64_t most_tasks = 4'000'000;  ///< of one array in Slurm
 
-/// States that a job does not leave by itself.
+/// Final states of a job.
 constexpr std::array over{"COMPLETED", "FAILED",   "CANCELLED",     "TIMEOUT",  "NODE_FAIL",
                           "PREEMPTED", "DEADLINE", "OUT_OF_MEMORY", "BOOT_FAIL"};
-/// Words that stand beside a state and say that the job is not over after all.
+/// Flags beside a final state that say that the job has not ended yet.
 constexpr std::array not_yet{"COMPLETING", "REQUEUED", "REQUEUE_HOLD", "REQUEUE_FED", "SPECIAL_EXIT"};
 
 template <class Words>
@@ -78,7 +78,7 @@ SlurmQueue::SlurmQueue(const std::string& json) {
     const std::string place = "squeue: /jobs/" + std::to_string(i);
     if (!job.is_object()) throw IoError(place + " is not an object");
     const auto array = number(job, "array_job_id", place);
-    if (!array || *array == 0) continue;  // not an array, so none of ours
+    if (!array || *array == 0) continue;  // not an array, so not from Talus
     QueuedTask task = state(job, place);
     if (const std::string reason = text(job, "state_reason"); reason != "None") task.reason = reason;
     names_[text(job, "name")] = *array;

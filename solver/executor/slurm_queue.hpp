@@ -9,10 +9,10 @@
 
 namespace talus::executor {
 
-/// An array task as the queue has it.
+/// An array task in the reply of squeue.
 struct QueuedTask {
   std::string state;  ///< Slurm's word: "PENDING", "NODE_FAIL"
-  bool alive = true;  ///< it waits, runs, or will
+  bool alive = true;  ///< it waits or runs, or Slurm will requeue it
   bool running = false;
   std::string reason = {};  ///< why it waits, Slurm's word: "Resources", "JobHeldUser"; empty where it gives none
 };
@@ -24,7 +24,7 @@ class SlurmQueue {
   /// @throws IoError naming the place
   explicit SlurmQueue(const std::string& json);
 
-  /// Nothing where Slurm does not know it: never submitted, or ended long ago.
+  /// Unset if Slurm does not know the task: never submitted, or ended long ago.
   std::optional<QueuedTask> task(std::int64_t array_job, std::int64_t index) const;
   /// The array job of this name.
   std::optional<std::int64_t> job_named(const std::string& name) const;

@@ -44,8 +44,8 @@ class DirectoryStore final : public Store {
 
   StudyInfo info_;
   Records runs_, replicates_;
-  std::int64_t rank_ = 0;       ///< of the first run not looked at yet
-  std::deque<Claim> returned_;  ///< given back, before those
+  std::int64_t rank_ = 0;       ///< of the first run that has not been considered yet
+  std::deque<Claim> returned_;  ///< given back; claimed before those
   std::map<RunKey, std::int64_t> claimed_;
   bool dropped_realizations_ = false, dropped_replicates_ = false;
 };

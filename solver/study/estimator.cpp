@@ -26,11 +26,6 @@ void StopRule::add(std::int64_t index, std::optional<double> influence_zone) {
   if (zones_.n >= least_to_stop && *zones_.half_width() <= *half_width_) size_ = next_;
 }
 
-std::int64_t rank_of(const RunKey& key, std::int64_t replicates) {
-  if (key.is_replicate()) return key.index;
-  return key.index == 0 ? 0 : replicates + key.index;
-}
-
 RunKey run_of_rank(std::int64_t rank, std::int64_t replicates) {
   if (rank == 0) return realization(0);
   return rank <= replicates ? replicate(rank) : realization(rank - replicates);

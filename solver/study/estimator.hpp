@@ -12,13 +12,12 @@
 
 namespace talus {
 
-/// The order of the runs of a study: realization 0, the replicates, then the other realizations.
+/// The run at a place in the order of a study: realization 0, the replicates, then the other realizations.
 /// @param replicates  of the study
-std::int64_t rank_of(const RunKey& key, std::int64_t replicates);
 RunKey run_of_rank(std::int64_t rank, std::int64_t replicates);
 
-/// The one failure rule: more than `max_failed_share` of the planned realizations have failed, so that nothing can make
-/// the study right again; or all have been made and none is done.
+/// The one failure rule: more than `max_failed_share` of the planned realizations have failed, which no later run can
+/// change; or all have ended and none is done.
 bool too_many_failed(std::int64_t failed, std::int64_t done, std::int64_t planned, double max_failed_share);
 
 /// A mean that grows value by value (Welford 1962).
@@ -30,12 +29,12 @@ struct RunningMean {
   std::optional<double> half_width() const;
 };
 
-/// Fewer finished realizations never stop a study.
+/// A study with fewer realizations done never stops early.
 inline constexpr std::int64_t least_to_stop = 10;
 
 /// Finds the smallest n such that the realizations 0..n-1 are all recorded, at least `least_to_stop` of them done, and
-/// the 95 % half width of their mean influence zone is at most a given one. The study is then cut to 0..n-1. Taken at
-/// the first n that suits, the interval covers a little less often than 95 %.
+/// the 95 % half width of their mean influence zone is at most a given one. The study is then cut to 0..n-1. Because
+/// the first suitable n is taken, the interval covers slightly less than 95 %.
 class StopRule {
  public:
   /// @param half_width  StudySpec::stop_half_width [m]; unset: a study never stops early
@@ -72,7 +71,7 @@ class Estimator {
   std::int64_t done() const { return zones_.n; }
   std::int64_t failed() const { return failed_; }
   std::int64_t replicates_made() const { return replicates_; }
-  /// Of the influence zone over what is done; unset while nothing can be said [m].
+  /// Of the influence zone over what is done; unset while there are too few [m].
   std::optional<double> mean() const { return zones_.n > 0 ? std::optional(zones_.mean) : std::nullopt; }
   std::optional<double> mean_half_width() const { return zones_.half_width(); }
 

@@ -12,6 +12,12 @@
 
 namespace talus {
 
+/// Reads realizations.csv or noise_floor.csv: RFC 4180, a header, then one line per record in order of index, with
+/// numbers that read back exactly. `index_name` heads the first column ("index", "replicate").
+/// @throws IoError naming file and line: another header, a wrong number of fields, not a number, indices out of order
+/// or twice
+std::vector<Record> read_csv(const std::filesystem::path& path, const std::string& index_name);
+
 /// Takes a record.
 using RecordSink = std::function<void(const Record&)>;
 /// Gives the records of one kind to a sink, in order of index.

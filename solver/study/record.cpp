@@ -26,8 +26,8 @@ std::optional<Record> read_result(const fs::path& file, const RunKey& key, const
   if (!fs::exists(file)) return std::nullopt;
   const auto read = [&](const Json& json) -> std::optional<Record> {
     Record record{.index = key.index, .done = true};
-    visit_numbers(record, [&](const char*, const std::string& pointer, auto& value) {
-      json.at(Json::json_pointer(pointer)).get_to(value);
+    visit_numbers(record, [&](const char* name, const char* object, auto& value) {
+      (object ? json.at(object) : json).at(name).get_to(value);
     });
     json.at("digest").get_to(record.digest);
     const bool interrupted = json.at("ending") == "interrupted";

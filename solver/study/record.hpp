@@ -1,5 +1,5 @@
 #pragma once
-// What became of one run.
+// The outcome of one run: read from its result.json, or the record of its failure.
 
 #include <array>
 #include <cstdint>
@@ -32,24 +32,23 @@ struct Record {
 
 /// A number of a run beside its measures: what it drew, and what it cost.
 struct Covariate {
-  const char* key;      ///< in the tables, and as SQL column
-  const char* pointer;  ///< in result.json
+  const char* key;     ///< in result.json, in the tables, and as SQL column
+  const char* object;  ///< of result.json that holds it; null: the document itself
   std::variant<double Record::*, std::int64_t Record::*> member;
 };
-inline constexpr std::array covariate_table{
-    Covariate{"mean_friction_angle_deg", "/field/mean_friction_angle_deg", &Record::mean_phi_deg},
-    Covariate{"captured_variance", "/field/captured_variance", &Record::captured_variance},
-    Covariate{"steps", "/steps", &Record::steps}, Covariate{"wall_clock_s", "/wall_clock_s", &Record::wall_clock}};
+inline constexpr std::array covariate_table{Covariate{"mean_friction_angle_deg", "field", &Record::mean_phi_deg},
+                                            Covariate{"captured_variance", "field", &Record::captured_variance},
+                                            Covariate{"steps", nullptr, &Record::steps},
+                                            Covariate{"wall_clock_s", nullptr, &Record::wall_clock}};
 
-/// Calls `use(key, pointer, value)` for every number of a record, in the order of the tables and of the SQL columns:
-/// the measures, then the covariates.
+/// Calls `use(key, object, value)` for every number of a record, in the order of the tables and of the SQL columns: the
+/// measures, then the covariates.
 template <class AnyRecord, class Use>
 void visit_numbers(AnyRecord& record, const Use& use) {
-  for (const Measure& measure : measure_table)
-    use(measure.key, "/" + std::string(measure.key), record.measures.*measure.member);
-  for (const Covariate& covariate : covariate_table)
-    std::visit([&](auto member) { use(covariate.key, std::string(covariate.pointer), record.*member); },
-               covariate.member);
+  const char* const document = nullptr;
+  for (const Measure& measure : measure_table) use(measure.key, document, record.measures.*measure.member);
+  for (const Covariate& of : covariate_table)
+    std::visit([&](auto member) { use(of.key, of.object, record.*member); }, of.member);
 }
 
 /// Why a run failed.

@@ -156,7 +156,7 @@ void StudyRunner::run_all(Engine& engine) {
     const Clock::time_point begin = Clock::now();
     if (begin < publish_at) continue;
     publish();
-    // A long table takes its time: at most a twentieth of ours.
+    // Writing long tables takes at most a twentieth of the time.
     publish_at = Clock::now() + std::max<Clock::duration>(options_.publish_every, 20 * (Clock::now() - begin));
   }
 }

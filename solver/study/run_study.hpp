@@ -50,8 +50,8 @@ struct RunStudyOptions {
   std::chrono::seconds grace{60};                 ///< for workers to checkpoint, or for those of a killed study to end
 };
 
-/// Makes `directory` the directory of the study without running anything: the plan and the case, for whoever runs the
-/// realizations; a plan that is there already may be made longer.
+/// Makes `directory` the directory of the study without running anything: the plan and the case, for the process that
+/// runs the realizations; a plan that is there already may be made longer.
 /// @throws ConfigError, IoError as run_study
 void prepare_study(const Plan& plan, const nlohmann::ordered_json& resolved, const std::filesystem::path& directory);
 

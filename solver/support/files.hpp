@@ -96,7 +96,8 @@ TriedLock try_lock(const std::filesystem::path& path, bool inherited);
 /// directory is not empty, and that is waited for.
 /// @throws IoError
 void remove_directory(const std::filesystem::path& path);
-/// The same at once; what a network file system does not let go yet stays, for who removes the directory around it.
+/// The same without waiting: what a network file system does not release yet stays, and goes with the directory around
+/// it.
 void remove_what_goes(const std::filesystem::path& path);
 
 }  // namespace talus

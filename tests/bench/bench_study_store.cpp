@@ -46,9 +46,8 @@ std::string result(std::int64_t index) {
 }
 
 void make(const fs::path& directory, std::int64_t n) {
-  fs::create_directories(directory / "runs");
-  // So that the directory is one that this study may continue.
   OutputDirectory(directory, OutputKind::study, "0123456789abcdef", true);
+  fs::create_directories(directory / "runs");
   write_plan(directory, plan(n));
   for (std::int64_t i = 0; i < n; ++i) std::ofstream(StudyPaths{directory}.result(realization(i))) << result(i) << "\n";
 }

@@ -9,7 +9,6 @@
 
 #include "jobs/statistics.hpp"
 #include "queue/store.hpp"
-#include "study/csv.hpp"
 #include "study/estimator.hpp"
 #include "study/publish.hpp"
 #include "temporary_directory.hpp"

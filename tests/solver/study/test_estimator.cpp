@@ -79,7 +79,6 @@ TEST(Estimator, OrdersTheRunsOfAStudy) {
   const std::vector<RunKey> order{realization(0), replicate(1), replicate(2), realization(1), realization(2)};
   for (std::int64_t rank = 0; rank < std::ssize(order); ++rank) {
     EXPECT_EQ(run_of_rank(rank, 2), order[static_cast<std::size_t>(rank)]) << rank;
-    EXPECT_EQ(rank_of(run_of_rank(rank, 2), 2), rank);
   }
   EXPECT_EQ(run_of_rank(1, 0), realization(1));
 }

@@ -12,7 +12,7 @@
 
 #include "executor/process.hpp"
 #include "studies.hpp"
-#include "study/csv.hpp"
+#include "study/publish.hpp"
 #include "study/run_study.hpp"
 #include "support/error.hpp"
 
