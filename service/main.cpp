@@ -9,7 +9,7 @@
 #include <iostream>
 #include <thread>
 
-#include "base/log.hpp"
+#include "base/json.hpp"
 #include "http/server.hpp"
 #include "http/service.hpp"
 #include "options.hpp"
@@ -20,7 +20,7 @@ namespace {
 using namespace talus;
 using namespace talus::service;
 
-/// The signals that ask us to stop, kept from every thread so that main can wait for them.
+/// Blocks the signals that stop talusd in every thread, so that main can wait for them.
 sigset_t hold_stop_signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -31,7 +31,7 @@ sigset_t hold_stop_signals() {
   return set;
 }
 
-/// Threads, workers and clients need descriptors.
+/// Allows as many descriptors as possible, for threads, workers and clients.
 void raise_file_limit() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -39,8 +39,9 @@ void raise_file_limit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-/// Takes a lock; a killed process keeps it for a moment longer.
-/// @param inherited  whether workers hold it, too
+/// Takes a lock, which a killed process may hold a moment longer.
+/// @param inherited  workers hold it, too
+/// @throws IoError with the text `otherwise` where another process still holds it after `patience`
 FileDescriptor wait_for_lock(const std::filesystem::path& path, bool inherited, std::chrono::seconds patience,
                              const std::string& otherwise) {
   const auto end = std::chrono::steady_clock::now() + patience;
@@ -58,50 +59,34 @@ std::string url_of(const Config& config) {
   return "http://" + (v6 ? "[" + config.address + "]" : config.address) + ":" + std::to_string(config.port);
 }
 
-ServerSettings settings_of(const Config& config, const Tokens& tokens) {
-  ServerSettings settings;
-  settings.guard.body_bytes = config.body_bytes;
-  settings.guard.loopback_names_only = !tokens.wanted() && config.public_url.empty();
-  settings.timing.request = config.request_limit;
-  settings.threads = config.http_threads;
-  return settings;
-}
-
 int serve(Config config) {
   const sigset_t stop_signals = hold_stop_signals();
   raise_file_limit();
-  ::umask(027);  // what the jobs hold is not for everybody on this machine
+  ::umask(027);  // the data of jobs are not readable for every user of this machine
   const Tokens tokens = config.tokens.empty() ? Tokens() : Tokens(config.tokens);
   const DataDirectory data{config.data};
   for (const auto& directory : {data.root, data.jobs(), data.scratch()}) std::filesystem::create_directories(directory);
   const FileDescriptor lock =
       wait_for_lock(data.lock(), false, std::chrono::seconds(1), "another talusd is using " + data.root.string());
-  // When talusd was killed its workers die with it, but not at once; two of them in one directory would spoil it.
+  // The workers of a killed talusd end a moment after it; until then they may still write into the data directory.
   const FileDescriptor workers_lock =
       wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
                     "workers of an earlier talusd still run in " + data.root.string() + "; stop them first");
 
   talus::service::Store store(data.database(), data.jobs(), system_now,
                               std::chrono::duration_cast<std::chrono::milliseconds>(config.lease).count());
-  Changes changes;
-  Scheduler scheduler(config, store, changes);
-  Jobs jobs(config, store, scheduler, changes);
+  Scheduler scheduler(config, store);
+  Jobs jobs(config, store, scheduler);
   std::atomic<bool> stopping{false};
-  Service service{
-      .config = config, .store = store, .jobs = jobs, .scheduler = scheduler, .changes = changes, .stopping = [&] {
-        return stopping.load();
-      }};
-  Router router;
-  add_discovery_routes(router);
-  add_execution_routes(router, service);
-  add_job_routes(router, service);
-  add_realization_routes(router, service);
-  add_event_routes(router, service);
-  add_operation_routes(router, service);
-  add_umbridge_routes(router, service);
-
-  Server server(settings_of(config, tokens),
-                [&](const Incoming& request) { return answer(request, router, service, tokens); });
+  Service service{.config = config, .store = store, .jobs = jobs, .scheduler = scheduler, .stopping = [&] {
+                    return stopping.load();
+                  }};
+  Routes routes;
+  for (const Routes& group :
+       {discovery_routes(), job_routes(), realization_routes(), event_routes(), operation_routes(), umbridge_routes()})
+    routes.insert(routes.end(), group.begin(), group.end());
+  Server server(config, !tokens.wanted() && config.public_url.empty(),
+                [&](Incoming request) { return answer(std::move(request), routes, service, tokens); });
   config.port = server.bind(config.address, config.port);
   if (config.port == 0)
     throw IoError("cannot listen on " + config.address +
@@ -119,7 +104,7 @@ int serve(Config config) {
   log_info("stopping", {{"signal", number}});
   stopping = true;
   jobs.stop();
-  changes.announce();
+  scheduler.changes().notify();
   scheduler.drain();
   server.stop();
   http.join();
@@ -139,17 +124,10 @@ int main(int argc, char** argv) {
       return static_cast<int>(Exit::ok);
     }
     return serve(options.config);
-  } catch (const IoError& e) {
-    std::cerr << "talusd: " << e.what() << "\n";
-    return static_cast<int>(Exit::io);
-  } catch (const StorageError& e) {
-    std::cerr << "talusd: " << e.what() << "\n";
-    return static_cast<int>(Exit::io);
-  } catch (const std::filesystem::filesystem_error& e) {
-    std::cerr << "talusd: " << e.what() << "\n";
-    return static_cast<int>(Exit::io);
   } catch (const std::exception& e) {
     std::cerr << "talusd: " << e.what() << "\n";
-    return static_cast<int>(Exit::internal);
+    const bool io = dynamic_cast<const IoError*>(&e) || dynamic_cast<const StorageError*>(&e) ||
+                    dynamic_cast<const std::filesystem::filesystem_error*>(&e);
+    return static_cast<int>(io ? Exit::io : Exit::internal);
   }
 }

@@ -10,17 +10,16 @@ namespace {
 namespace fs = std::filesystem;
 
 /// "127.0.0.1:8080", "[::1]:0", "8080"
-std::string split_listen(const std::string& text, Config& config) {
+void split_listen(const std::string& text, Config& config) {
   const std::size_t colon = text.rfind(':');
   std::string host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
   const std::string port = colon == std::string::npos ? text : text.substr(colon + 1);
   if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
   if (host.empty() || port.empty() || port.size() > 5 || port.find_first_not_of("0123456789") != std::string::npos ||
       std::stoi(port) > 65535)
-    return "must be ADDRESS:PORT";
+    throw std::runtime_error("--listen must be ADDRESS:PORT");
   config.address = host;
   config.port = std::stoi(port);
-  return {};
 }
 
 /// talus beside talusd, if it is there.
@@ -30,84 +29,94 @@ fs::path default_program() {
   return own.parent_path() / "talus";
 }
 
-int wrong(const std::string& what) {
-  std::cerr << "talusd: " << what << "\n";
-  return 2;
-}
-
-}  // namespace
-
+/// Whether only this machine can reach an address.
 bool is_loopback(const std::string& address) {
   return address == "localhost" || address == "::1" || address.starts_with("127.");
 }
+
+/// The values of the options that Config holds in another form.
+struct RawOptions {
+  std::string listen = "127.0.0.1:8080", executor = "local";
+  fs::path slurm;
+  double min_disk_mib = 1024.0, body_mib = 4.0, memory_mib = 0.0;
+  int time_limit = 6 * 3600, grace = 30, lease = 30;  // [s]
+};
+
+/// @throws std::runtime_error saying which option is wrong
+void complete(Config& config, const RawOptions& raw) {
+  constexpr double mib = 1048576.0;
+  config.time_limit = std::chrono::seconds(raw.time_limit);
+  config.grace = std::chrono::seconds(raw.grace);
+  config.lease = std::chrono::seconds(raw.lease);
+  config.body_bytes = static_cast<std::size_t>(raw.body_mib * mib);
+  config.quotas.disk_bytes = static_cast<std::uint64_t>(raw.min_disk_mib * mib);
+  // A negative value, no limit, is for sanitizers, which reserve terabytes of address space.
+  if (raw.memory_mib != 0.0) config.memory_bytes = static_cast<std::uint64_t>(std::max(0.0, raw.memory_mib * mib));
+  if (config.data.empty()) throw std::runtime_error("--data DIR is required");
+  split_listen(raw.listen, config);
+  if (!is_loopback(config.address) && config.tokens.empty())
+    throw std::runtime_error("--listen " + config.address +
+                             " is reachable from other hosts; it requires --tokens FILE");
+  std::error_code error;
+  if (!fs::exists(config.program, error))
+    throw std::runtime_error((error ? "cannot examine " : "there is no ") + config.program.string() +
+                             (error ? ": " + error.message() : "") + "; give --talus");
+  if (raw.executor == "slurm")
+    config.slurm = raw.slurm.empty() ? executor::SlurmConfig{} : executor::read_slurm_config(raw.slurm);
+  config.data = fs::absolute(config.data);
+  config.program = fs::absolute(config.program);
+}
+
+}  // namespace
 
 Options read_options(int argc, char** argv) {
   Options options;
   Config& config = options.config;
   config.program = default_program();
-  std::string listen = "127.0.0.1:8080";
-  std::string place = "local";
-  fs::path slurm;
-  double min_disk_mib = 1024.0, body_mib = 4.0, memory_mib = 0.0;
-  int time_limit = 6 * 3600, grace = 30, lease = 30;
+  RawOptions raw;
 
   CLI::App app{"talusd: Talus as a service", "talusd"};
   app.set_version_flag("--version", std::string("talusd ") + TALUS_VERSION);
   app.set_config("--config", "", "configuration file with the same options, one per line: name = value");
+  /// An option whose default is shown by --help.
+  const auto with_default = [&app](const char* name, auto& variable, const char* text) {
+    return app.add_option(name, variable, text)->capture_default_str();
+  };
   app.add_option("--data", config.data, "directory for the queue and all results; created if missing");
-  app.add_option("--listen", listen,
-                 "address and port to listen on; port 0 picks a free one; other than loopback requires --tokens")
-      ->capture_default_str();
-  app.add_option("--executor", place, "where runs are executed: local (here) or slurm (array jobs)")
-      ->check(CLI::IsMember({"local", "slurm"}))
-      ->capture_default_str();
-  app.add_option("--slurm", slurm, "configuration file of --executor slurm");
-  app.add_option("--workers", config.workers, "number of concurrent runs with --executor local")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  app.add_option("--threads", config.threads, "OpenMP threads per run")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+  with_default("--listen", raw.listen,
+               "address and port to listen on; port 0 picks a free one; other than loopback requires --tokens");
+  with_default("--executor", raw.executor, "where runs are executed: local (here) or slurm (array jobs)")
+      ->check(CLI::IsMember({"local", "slurm"}));
+  app.add_option("--slurm", raw.slurm, "configuration file of --executor slurm");
+  with_default("--workers", config.workers, "number of concurrent runs with --executor local")
+      ->check(CLI::Range(1, 1024));
+  with_default("--threads", config.threads, "OpenMP threads per run")->check(CLI::Range(1, 1024));
   app.add_option("--tokens", config.tokens, "token file; requests without a valid token are rejected");
   app.add_option("--talus", config.program, "path of the talus program; default: the one beside talusd");
   app.add_option("--models", config.models, "directory of cases to serve over UM-Bridge");
   app.add_option("--public-url", config.public_url, "base URL of absolute links when talusd is behind a proxy");
-  app.add_option("--attempts", config.attempts, "number of crashes after which a run counts as failed")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  app.add_option("--time-limit", time_limit, "wall-clock limit of a run [s]")
-      ->check(CLI::Range(1, 30 * 86400))
-      ->capture_default_str();
-  app.add_option("--grace", grace, "time for runs to write a checkpoint when talusd is stopped [s]")
-      ->check(CLI::Range(0, 3600))
-      ->capture_default_str();
-  app.add_option("--lease", lease, "time after which a run whose worker no longer responds is requeued [s]")
-      ->check(CLI::Range(3, 3600))
-      ->capture_default_str();
-  app.add_option("--memory", memory_mib, "address-space limit of a run [MiB]; 0: from its size; negative: no limit")
-      ->capture_default_str();
-  app.add_option("--nice", config.niceness, "niceness of runs")->check(CLI::Range(0, 19))->capture_default_str();
-  app.add_option("--max-body", body_mib, "MiB of a request")->check(CLI::Range(0.001, 1024.0))->capture_default_str();
-  app.add_option("--max-streams", config.streams, "maximum number of open event streams")
-      ->check(CLI::Range(1, 4096))
-      ->capture_default_str();
-  app.add_option("--http-threads", config.http_threads, "maximum number of concurrent connections")
-      ->check(CLI::Range(64, 4096))
-      ->capture_default_str();
-  app.add_option("--max-particles", config.quotas.particles, "maximum number of particles of a case")
-      ->capture_default_str();
-  app.add_option("--max-steps", config.quotas.steps, "maximum number of time steps of a run")->capture_default_str();
-  app.add_option("--max-realizations", config.quotas.realizations, "maximum number of realizations of a job")
-      ->check(CLI::Range(1, 10'000'000))
-      ->capture_default_str();
-  app.add_option("--max-core-hours", config.quotas.core_hours, "maximum estimated cost of a job [core hours]")
-      ->capture_default_str();
-  app.add_option("--max-jobs", config.quotas.open_jobs, "maximum number of open jobs")->capture_default_str();
-  app.add_option("--max-jobs-each", config.quotas.open_jobs_of_one, "maximum number of open jobs per subject")
-      ->capture_default_str();
-  app.add_option("--min-disk", min_disk_mib, "free disk space below which no job is accepted [MiB]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  with_default("--attempts", config.attempts, "number of crashes after which a run counts as failed")
+      ->check(CLI::Range(1, 100));
+  with_default("--time-limit", raw.time_limit, "wall-clock limit of a run [s]")->check(CLI::Range(1, 30 * 86400));
+  with_default("--grace", raw.grace, "time for runs to write a checkpoint when talusd is stopped [s]")
+      ->check(CLI::Range(0, 3600));
+  with_default("--lease", raw.lease, "time after which a run whose worker no longer responds is requeued [s]")
+      ->check(CLI::Range(3, 3600));
+  with_default("--memory", raw.memory_mib, "address-space limit of a run [MiB]; 0: from its size; negative: no limit");
+  with_default("--nice", config.niceness, "niceness of runs")->check(CLI::Range(0, 19));
+  with_default("--max-body", raw.body_mib, "MiB of a request")->check(CLI::Range(0.001, 1024.0));
+  with_default("--max-streams", config.streams, "maximum number of open event streams")->check(CLI::Range(1, 4096));
+  with_default("--http-threads", config.http_threads, "maximum number of concurrent connections")
+      ->check(CLI::Range(64, 4096));
+  with_default("--max-particles", config.quotas.particles, "maximum number of particles of a case");
+  with_default("--max-steps", config.quotas.steps, "maximum number of time steps of a run");
+  with_default("--max-realizations", config.quotas.realizations, "maximum number of realizations of a job")
+      ->check(CLI::Range(1, 10'000'000));
+  with_default("--max-core-hours", config.quotas.core_hours, "maximum estimated cost of a job [core hours]");
+  with_default("--max-jobs", config.quotas.open_jobs, "maximum number of open jobs");
+  with_default("--max-jobs-each", config.quotas.open_jobs_of_one, "maximum number of open jobs per subject");
+  with_default("--min-disk", raw.min_disk_mib, "free disk space below which no job is accepted [MiB]")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--new-token", options.new_token, "print a new token and its line for the token file, then exit")
       ->expected(2)
       ->type_name("submit|read SUBJECT");
@@ -119,35 +128,12 @@ Options read_options(int argc, char** argv) {
     return options;
   }
   if (!options.new_token.empty()) return options;
-  config.time_limit = std::chrono::seconds(time_limit);
-  config.grace = std::chrono::seconds(grace);
-  config.lease = std::chrono::seconds(lease);
-  config.body_bytes = static_cast<std::size_t>(body_mib * 1048576.0);
-  config.quotas.disk_bytes = static_cast<std::uint64_t>(min_disk_mib * 1048576.0);
-  using MemoryLimit = Config::MemoryLimit;
-  config.memory_limit = memory_mib < 0    ? MemoryLimit::none
-                        : memory_mib == 0 ? MemoryLimit::by_size
-                                          : MemoryLimit::fixed;
-  if (memory_mib > 0) config.memory_bytes = static_cast<std::uint64_t>(memory_mib * 1048576.0);
-  if (config.data.empty())
-    options.exit = wrong("--data DIR is required");
-  else if (const std::string why = split_listen(listen, config); !why.empty())
-    options.exit = wrong("--listen " + why);
-  else if (!is_loopback(config.address) && config.tokens.empty())
-    options.exit = wrong("--listen " + config.address + " is reachable from other hosts; it requires --tokens FILE");
-  else if (std::error_code error; !fs::exists(config.program, error))
-    options.exit = wrong((error ? "cannot examine " : "there is no ") + config.program.string() +
-                         (error ? ": " + error.message() : "") + "; give --talus");
-  if (!options.exit && place == "slurm") {
-    try {
-      config.slurm = slurm.empty() ? executor::SlurmConfig{} : executor::read_slurm_config(slurm);
-    } catch (const executor::SlurmConfigError& e) {
-      options.exit = wrong(e.what());
-    }
+  try {
+    complete(config, raw);
+  } catch (const std::runtime_error& e) {
+    std::cerr << "talusd: " << e.what() << "\n";
+    options.exit = 2;
   }
-  if (options.exit) return options;
-  config.data = fs::absolute(config.data);
-  config.program = fs::absolute(config.program);
   return options;
 }
 

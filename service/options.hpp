@@ -9,16 +9,13 @@
 
 namespace talus::service {
 
-/// What main is to do.
+/// The task of main.
 struct Options {
   Config config;
-  std::vector<std::string> new_token;  ///< role, subject: print a token and end
-  std::optional<int> exit = {};        ///< end with this: help was asked for, or the usage is wrong
+  std::vector<std::string> new_token;  ///< role, subject: print a token and exit
+  std::optional<int> exit = {};        ///< exit with this code: help was requested, or the usage is wrong
 };
 
 Options read_options(int argc, char** argv);
-
-/// Whether only this machine can reach an address.
-bool is_loopback(const std::string& address);
 
 }  // namespace talus::service

@@ -23,7 +23,7 @@ std::string hex(const unsigned char* bytes, std::size_t n) {
 std::string sha256(std::string_view text) {
   std::array<unsigned char, 32> sum{};
   if (EVP_Digest(text.data(), text.size(), sum.data(), nullptr, EVP_sha256(), nullptr) != 1)
-    throw std::runtime_error("SHA-256 is not to be had");
+    throw std::runtime_error("SHA-256 is not available");
   return hex(sum.data(), sum.size());
 }
 

@@ -1,17 +1,38 @@
+// From a request to its answer: token, route, handler, problem, ETag, log line.
+
 #include <chrono>
+#include <cmath>
 
 #include "base/digest.hpp"
-#include "base/log.hpp"
-#include "http/problem.hpp"
 #include "http/service.hpp"
+#include "http/text.hpp"
 
 namespace talus::service {
 namespace {
 
-/// Those that say nothing about anybody's work.
+std::vector<std::string> segments_of(const std::string& path) {
+  std::vector<std::string> all = split(path.substr(std::min<std::size_t>(1, path.size())), '/');
+  if (all.size() > 1 && all.back().empty()) all.pop_back();  // "/jobs/" is "/jobs"
+  return all;
+}
+
+bool matches(const std::vector<std::string>& pattern, const std::vector<std::string>& path,
+             std::vector<std::string>& captured) {
+  if (pattern.size() != path.size()) return false;
+  captured.clear();
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (pattern[i] == "{}")
+      captured.push_back(path[i]);
+    else if (pattern[i] != path[i])
+      return false;
+  }
+  return true;
+}
+
+/// Paths that need no token: they reveal nothing of any job.
 bool is_open(const std::string& path) { return path == "/healthz" || path == "/readyz"; }
 
-/// "http://host:port" in front of absolute links.
+/// "http://host:port" before the path of absolute links.
 std::string base_of(const Incoming& request, const Config& config) {
   if (!config.public_url.empty()) return config.public_url;
   const std::string scheme = request.header("x-forwarded-proto") == "https" ? "https" : "http";
@@ -19,82 +40,90 @@ std::string base_of(const Incoming& request, const Config& config) {
   return scheme + "://" + (host.empty() ? config.address + ":" + std::to_string(config.port) : host);
 }
 
-void identify(Exchange& exchange, const Tokens& tokens) {
-  if (!tokens.wanted()) return;
-  const auto bearer = tokens.find(exchange.request.header("authorization"));
-  exchange.subject = bearer ? bearer->subject : "";
-  exchange.role = bearer ? bearer->role : Role::none;
-}
-
-Answer routed(Exchange& exchange, const Router& router) {
+Answer routed(Exchange& exchange, const Routes& routes) {
   const Incoming& request = exchange.request;
   if (exchange.role == Role::none && !is_open(request.path))
-    throw Refusal(Reason::unauthorized, "send an Authorization: Bearer header with a valid token");
-  Router::Found found = router.find(request.method, request.path);
-  if (found.allow.empty()) throw Refusal(Reason::not_found, "no resource exists at this path");
+    throw Refusal(reason::unauthorized, "send an Authorization: Bearer header with a valid token");
+  FoundRoute found = find_route(routes, request.method, request.path);
+  if (found.allow.empty()) throw Refusal(reason::not_found, "no resource exists at this path");
   if (request.method == "OPTIONS") return {.status = 204, .headers = {{"Allow", found.allow}}};
-  if (!found.handler) {
-    Refusal refusal(Reason::method_not_allowed, request.method + " is not allowed on this path");
+  if (!found.route) {
+    Refusal refusal(reason::method_not_allowed, request.method + " is not allowed on this path");
     refusal.allow = found.allow;
     throw refusal;
   }
-  if (found.role > exchange.role)
-    throw Refusal(Reason::forbidden, "this token has the role read; submitting needs a token with the role submit");
+  if (found.route->role > exchange.role)
+    throw Refusal(reason::forbidden, "this token has the role read; submitting needs a token with the role submit");
   exchange.captured = std::move(found.captured);
-  return (*found.handler)(exchange);
+  return found.route->handler(exchange);
 }
 
-/// RFC 9110 13.1.2, for weak and strong tags alike.
-bool matches(const std::string& if_none_match, const std::string& tag) {
-  return if_none_match == "*" || if_none_match.find(tag) != std::string::npos;
-}
-
-void tag(Answer& answer, const Incoming& request) {
+/// Adds the entity tag; the answer to a client that has this version is 304 (RFC 9110 13.1.2, weak comparison).
+void add_tag(Answer& answer, const Incoming& request) {
   if ((request.method != "GET" && request.method != "HEAD") || answer.status != 200 || answer.type == event_stream)
     return;
-  const std::string etag = '"' + sha256(answer.body).substr(0, 24) + '"';
-  answer.headers.emplace_back("ETag", etag);
+  const std::string tag = '"' + sha256(answer.body).substr(0, 24) + '"', known = request.header("if-none-match");
+  answer.headers.emplace_back("ETag", tag);
   answer.headers.emplace_back("Cache-Control", "no-cache");
-  if (!matches(request.header("if-none-match"), etag)) return;
+  if (known != "*" && known.find(tag) == std::string::npos) return;
   answer.status = 304;
   answer.body.clear();
 }
 
-/// What a client calls its request, if it is fit for a log; else a new one.
+/// The client's X-Request-Id where it is harmless in a log, otherwise a new one.
 std::string request_id(const Incoming& request) {
   const std::string given = request.header("x-request-id");
-  const bool fit =
-      !given.empty() && given.size() <= 64 &&
-      given.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") == std::string::npos;
-  return fit ? given : random_hex(8);
+  return is_identifier(given, "-_.") ? given : random_hex(8);
 }
 
 }  // namespace
 
-Answer answer(const Incoming& request, const Router& router, Service& service, const Tokens& tokens) {
+FoundRoute find_route(const Routes& routes, const std::string& method, const std::string& path) {
+  FoundRoute found;
+  const std::vector<std::string> segments = segments_of(path);
+  for (const Route& route : routes) {
+    std::vector<std::string> captured;
+    const std::string known = route.method;
+    if (path == "*" ? found.allow.find(known) != std::string::npos
+                    : !matches(segments_of(route.pattern), segments, captured))
+      continue;
+    found.allow += (found.allow.empty() ? "" : ", ") + known + (known == "GET" ? ", HEAD" : "");
+    if (path == "*" || (known != method && !(known == "GET" && method == "HEAD"))) continue;
+    found.route = &route;
+    found.captured = std::move(captured);
+  }
+  if (!found.allow.empty()) found.allow += ", OPTIONS";
+  return found;
+}
+
+Answer answer(Incoming request, const Routes& routes, Service& service, const Tokens& tokens) {
   const auto begin = std::chrono::steady_clock::now();
-  Exchange exchange{.request = request, .base = base_of(request, service.config)};
+  Exchange exchange{.service = service, .request = std::move(request)};
   Answer answer;
   try {
-    identify(exchange, tokens);
-    answer = routed(exchange, router);
-    tag(answer, request);
+    exchange.base = base_of(exchange.request, service.config);
+    if (tokens.wanted()) {
+      const auto bearer = tokens.find(exchange.request.header("authorization")).value_or(Bearer{"", Role::none});
+      exchange.subject = bearer.subject;
+      exchange.role = bearer.role;
+    }
+    answer = routed(exchange, routes);
+    add_tag(answer, exchange.request);
   } catch (...) {
-    answer = problem(std::current_exception(), request.header("accept"));
+    answer = problem(std::current_exception(), exchange.request.header("accept"));
   }
-  const std::string id = request_id(request);
+  const std::string id = request_id(exchange.request);
   answer.headers.emplace_back("X-Request-Id", id);
   ++service.requests;
   if (answer.status >= 500) ++service.failures;
-  const auto ms =
-      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - begin).count() / 1000.0;
-  if (!is_open(request.path))
+  const std::chrono::duration<double, std::milli> duration = std::chrono::steady_clock::now() - begin;
+  if (!is_open(exchange.request.path))
     log_info("request", {{"request_id", id},
                          {"subject", exchange.subject},
-                         {"method", request.method},
-                         {"path", request.path},
+                         {"method", exchange.request.method},
+                         {"path", exchange.request.path},
                          {"status", answer.status},
-                         {"ms", ms}});
+                         {"ms", std::round(1000.0 * duration.count()) / 1000.0}});
   return answer;
 }
 

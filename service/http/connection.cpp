@@ -14,11 +14,12 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds glance{250};  ///< interval between checks for shutdown
 constexpr milliseconds linger{500};
+constexpr milliseconds idle_limit{5000};    ///< between two requests
+constexpr milliseconds write_limit{20000};  ///< for the client to accept the response
+
+const BadRequest too_slow{408, "the request was not received completely in time"};
 
 }  // namespace
-
-Connection::Connection(int fd, const GuardLimits& limits, const Timing& timing, std::function<bool()> stopping)
-    : fd_(fd), limits_(limits), timing_(timing), stopping_(std::move(stopping)) {}
 
 bool Connection::wait_for(short events, Clock::time_point deadline) const {
   for (;;) {
@@ -42,29 +43,29 @@ Connection::Got Connection::receive(Clock::time_point deadline) {
   return Got::bytes;
 }
 
-std::variant<WholeRequest, BadRequest, Closed> Connection::next() {
-  const Clock::time_point idle = Clock::now() + timing_.idle;
+std::optional<WholeRequest> Connection::next() {
+  const Clock::time_point idle = Clock::now() + idle_limit;
   while (buffer_.empty())
-    if (receive(idle) != Got::bytes) return Closed{};
+    if (receive(idle) != Got::bytes) return std::nullopt;
   while (buffer_.starts_with("\r\n")) buffer_.erase(0, 2);  // RFC 9112 2.2
 
-  const Clock::time_point deadline = Clock::now() + timing_.request;
+  const Clock::time_point deadline = Clock::now() + request_limit_;
   std::optional<std::size_t> end;
   while (!(end = head_end(buffer_))) {
     if (buffer_.size() > limits_.head_bytes)
-      return BadRequest{431, "the request header is longer than " + std::to_string(limits_.head_bytes) + " bytes"};
+      throw BadRequest{431, "the request header is longer than " + std::to_string(limits_.head_bytes) + " bytes"};
     const Got got = receive(deadline);
-    if (got == Got::end) return Closed{};
-    if (got == Got::nothing) return BadRequest{408, "the request was not received completely in time"};
+    if (got == Got::end) return std::nullopt;
+    if (got == Got::nothing) throw too_slow;
   }
   Head head = judge(std::string_view(buffer_).substr(0, *end), limits_);
-  if (head.status != 0) return BadRequest{head.status, head.why};
   buffer_.erase(0, *end);
-  if (head.expects_continue && buffer_.size() < head.body && !write("HTTP/1.1 100 Continue\r\n\r\n")) return Closed{};
+  if (head.expects_continue && buffer_.size() < head.body && !write("HTTP/1.1 100 Continue\r\n\r\n"))
+    return std::nullopt;
   while (buffer_.size() < head.body) {
     const Got got = receive(deadline);
-    if (got == Got::end) return Closed{};
-    if (got == Got::nothing) return BadRequest{408, "the request was not received completely in time"};
+    if (got == Got::end) return std::nullopt;
+    if (got == Got::nothing) throw too_slow;
   }
   WholeRequest request{.head = std::move(head), .body = buffer_.substr(0, head.body)};
   buffer_.erase(0, request.body.size());
@@ -72,7 +73,7 @@ std::variant<WholeRequest, BadRequest, Closed> Connection::next() {
 }
 
 bool Connection::write(const char* data, std::size_t size) {
-  const Clock::time_point deadline = Clock::now() + timing_.write;
+  const Clock::time_point deadline = Clock::now() + write_limit;
   while (size > 0) {
     const ssize_t sent = ::send(fd_.get(), data, size, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent > 0) {

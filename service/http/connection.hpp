@@ -4,7 +4,6 @@
 #include <chrono>
 #include <functional>
 #include <string>
-#include <variant>
 
 #include "http/guard.hpp"
 #include "support/files.hpp"
@@ -16,27 +15,18 @@ struct WholeRequest {
   Head head;
   std::string body;
 };
-/// An invalid request; where the next one begins is unknown, so the connection is closed.
-struct BadRequest {
-  int status;
-  std::string why;
-};
-struct Closed {};
-
-struct Timing {
-  std::chrono::milliseconds idle{5000};      ///< between two requests
-  std::chrono::milliseconds request{15000};  ///< from the first byte of a request to its last
-  std::chrono::milliseconds write{20000};    ///< for the client to accept the response
-};
-
 class Connection {
  public:
   using Clock = std::chrono::steady_clock;
 
+  /// @param request_limit  from the first byte of a request to its last
   /// @param stopping  polled: whether the server is shutting down
-  Connection(int fd, const GuardLimits& limits, const Timing& timing, std::function<bool()> stopping);
+  Connection(int fd, const GuardLimits& limits, std::chrono::milliseconds request_limit, std::function<bool()> stopping)
+      : fd_(fd), limits_(limits), request_limit_(request_limit), stopping_(std::move(stopping)) {}
 
-  std::variant<WholeRequest, BadRequest, Closed> next();
+  /// @return nothing where the client has closed the connection or sends nothing any more
+  /// @throws BadRequest
+  std::optional<WholeRequest> next();
   /// Writes all bytes. @return false if the client is gone or too slow, or the server is stopping
   bool write(const char* data, std::size_t size);
   bool write(const std::string& text) { return write(text.data(), text.size()); }
@@ -51,7 +41,7 @@ class Connection {
 
   FileDescriptor fd_;
   const GuardLimits& limits_;
-  Timing timing_;
+  std::chrono::milliseconds request_limit_;
   std::function<bool()> stopping_;
   std::string buffer_;  ///< received, not yet returned
 };

@@ -1,7 +1,5 @@
-// What is here: landing page, conformance, processes, OpenAPI.
+// Landing page, conformance classes, processes, OpenAPI.
 
-#include "http/documents.hpp"
-#include "http/links.hpp"
 #include "http/lookup.hpp"
 #include "http/service.hpp"
 
@@ -64,22 +62,17 @@ Json process(const Exchange& exchange) {
     description["links"] = links_of(exchange, name);
     return description;
   }
-  throw Refusal(Reason::no_such_process, "there is no process with this ID; GET /processes lists them");
+  throw Refusal(reason::no_such_process, "there is no process with this ID; GET /processes lists them");
 }
 
 }  // namespace
 
-Json link(const Exchange& exchange, const std::string& path, const std::string& rel, const std::string& title,
-          const std::string& type) {
-  return {{"href", exchange.base + path}, {"rel", rel}, {"type", type}, {"title", title}};
-}
-
-void add_discovery_routes(Router& router) {
-  router.add("GET", "/", Role::read, [](Exchange& e) { return json_answer(landing(e)); });
-  router.add("GET", "/conformance", Role::read, [](Exchange&) { return json_answer(conformance()); });
-  router.add("GET", "/processes", Role::read, [](Exchange& e) { return json_answer(processes(e)); });
-  router.add("GET", "/processes/{}", Role::read, [](Exchange& e) { return json_answer(process(e)); });
-  router.add("GET", "/api", Role::read, [](Exchange&) { return Answer{.type = openapi_type, .body = openapi_text()}; });
+Routes discovery_routes() {
+  return {{"GET", "/", Role::read, [](Exchange& e) { return json_answer(landing(e)); }},
+          {"GET", "/conformance", Role::read, [](Exchange&) { return json_answer(conformance()); }},
+          {"GET", "/processes", Role::read, [](Exchange& e) { return json_answer(processes(e)); }},
+          {"GET", "/processes/{}", Role::read, [](Exchange& e) { return json_answer(process(e)); }},
+          {"GET", "/api", Role::read, [](Exchange&) { return Answer{.type = openapi_type, .body = openapi_text()}; }}};
 }
 
 }  // namespace talus::service

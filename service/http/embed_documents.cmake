@@ -14,7 +14,7 @@ function(literal path out)
 endfunction()
 
 literal("${OPENAPI}" openapi)
-set(source "// Made by embed_documents.cmake from schemas/.\n#include \"http/documents.hpp\"\n\nnamespace talus::service {\n\n")
+set(source "// Made by embed_documents.cmake from schemas/.\n#include \"http/service.hpp\"\n\nnamespace talus::service {\n\n")
 string(APPEND source "const std::string& openapi_text() {\n  static const std::string text =${openapi};\n  return text;\n}\n\n")
 string(APPEND source "const std::vector<std::pair<std::string, std::string>>& process_texts() {\n")
 string(APPEND source "  static const std::vector<std::pair<std::string, std::string>> all = {\n")

@@ -22,15 +22,20 @@ struct GuardLimits {
   bool loopback_names_only = false;  ///< without tokens, a web page must not reach the service by another host name
 };
 
-/// Verdict on a request header.
+/// A valid request header.
 struct Head {
-  int status = 0;        ///< 0: valid; else the HTTP status of the refusal
-  std::string why = {};  ///< one line
   std::string method = {};
   std::size_t body = 0;  ///< Content-Length
   bool keep_alive = true;
   bool expects_continue = false;
   std::string rewritten = {};  ///< for the library, with the empty line
+};
+
+/// An invalid request, and the status to answer it with. Where the next request begins is unknown, so the connection is
+/// closed.
+struct BadRequest {
+  int status;
+  std::string why;  ///< one line
 };
 
 /// Header that carries the client's Content-Type: the library would act on the real one.
@@ -39,7 +44,7 @@ inline constexpr const char* body_type_header = "X-Body-Type";
 /// End of the header (after the empty line); nothing if it is incomplete.
 std::optional<std::size_t> head_end(std::string_view bytes);
 
-/// Checks a complete header.
+/// Checks a complete header. @throws BadRequest
 Head judge(std::string_view head, const GuardLimits& limits);
 
 }  // namespace talus::service

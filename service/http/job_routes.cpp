@@ -1,21 +1,131 @@
-// /jobs, /jobs/{id}, /jobs/{id}/results
+// From the submission of a job to its results: /processes/{id}/execution, /jobs, /jobs/{id}, /jobs/{id}/results
 
 #include <algorithm>
+#include <thread>
 
-#include "http/echo.hpp"
-#include "http/links.hpp"
+#include "base/digest.hpp"
 #include "http/lookup.hpp"
-#include "http/results.hpp"
+#include "http/text.hpp"
 
 namespace talus::service {
 namespace {
+
+/// An object can only stand in a results document as a qualified value.
+Json document_of(const Json& values) {
+  Json document = Json::object();
+  for (const auto& [name, value] : values.items())
+    document[name] = value.is_object() ? Json({{"value", value}, {"mediaType", "application/json"}}) : value;
+  return document;
+}
+
+Answer raw_answer(const Json& value) {
+  if (value.is_string()) return {.type = "text/plain", .body = value.get<std::string>()};
+  return json_answer(value);
+}
+
+bool accepts_multipart(const std::string& accept) {
+  return accept.empty() || accept.find("*/*") != std::string::npos || accept.find("multipart/") != std::string::npos;
+}
+
+/// RFC 2387; each part bears the name of its output as Content-ID (OGC 18-062r2, process-execute-sync-raw-value-multi).
+Answer multipart_answer(const Json& values) {
+  const std::string boundary = sha256(dump(values)).substr(0, 32);
+  std::string body, first_type;
+  for (const auto& [name, value] : values.items()) {
+    const Answer part = raw_answer(value);
+    if (first_type.empty()) first_type = part.type;
+    body += "--" + boundary + "\r\nContent-Type: " + part.type + "\r\nContent-ID: " + name + "\r\n\r\n" + part.body +
+            "\r\n";
+  }
+  return {.type = "multipart/related; boundary=" + boundary + "; type=\"" + first_type + "\"",
+          .body = body + "--" + boundary + "--\r\n"};
+}
+
+/// A results document; or, of a request with "response": "raw", the value itself, and of several values a
+/// multipart/related, unless the client accepts JSON alone.
+/// @param values  name to bare value
+Answer results_answer(const Json& values, bool raw, const Incoming& request) {
+  if (raw && values.size() == 1) return raw_answer(values.begin().value());
+  if (raw && values.size() > 1 && accepts_multipart(request.header("accept"))) return multipart_answer(values);
+  return json_answer(document_of(values));
+}
+
+bool prefers_async(const Incoming& request) {
+  for (const std::string& preference : split(request.header("prefer"), ','))
+    if (lower(trimmed(preference.substr(0, preference.find(';')))) == "respond-async") return true;
+  return false;
+}
+
+/// The body of a request for any process, whose outputs are `known`.
+Submission read_submission(const Exchange& exchange, const std::vector<std::string>& known) {
+  const Incoming& incoming = exchange.request;
+  const std::string type = lower(incoming.header("content-type"));
+  if (!type.empty() && type.find("json") == std::string::npos)
+    throw Refusal(reason::unsupported_media_type, "send the body as Content-Type: application/json");
+  const Json body = parse_body(incoming.body);
+  Faults faults;
+  Submission submission{.subject = exchange.subject};
+  if (!body.is_object()) throw Refusal(reason::bad_request, "the request body is invalid", {{"", "must be an object"}});
+  if (body.contains("inputs") && !body.at("inputs").is_object())
+    faults.add("/inputs", "must be an object");
+  else if (body.contains("inputs"))
+    submission.inputs = body.at("inputs");
+  submission.outputs = read_outputs(body, known, faults);
+  if (body.contains("response") && body.at("response") != "raw" && body.at("response") != "document")
+    faults.add("/response", "must be \"raw\" or \"document\"");
+  if (body.contains("subscriber"))
+    faults.add("/subscriber", "callbacks are not supported; poll the job or use its events");
+  refuse_if_any(faults, reason::bad_request, "the request body is invalid");
+  submission.raw = body.contains("response") && body.at("response") == "raw";
+  return submission;
+}
+
+using Submit = std::optional<Job> (Jobs::*)(const Submission&, const Store::Response&);
+
+Answer submit(Exchange& exchange, Submit submit_job, const Submission& submission) {
+  if (auto again = stored_answer(exchange)) return *again;
+  const std::optional<Job> job = (exchange.service.jobs.*submit_job)(submission, response_to_store(exchange, 201));
+  if (!job) {  // the same key, at the same moment
+    if (auto again = stored_answer(exchange)) return *again;
+    throw Refusal(reason::conflict, "another request with this Idempotency-Key is still in progress; retry later");
+  }
+  Answer answer = changed(exchange, *job, 201);
+  if (prefers_async(exchange.request)) answer.headers.emplace_back("Preference-Applied", "respond-async");
+  return answer;
+}
+
+void wait(double seconds, Service& service) {
+  if (seconds <= 0.0) return;
+  using Clock = std::chrono::steady_clock;
+  const WaitingRequest waiting(service, "send Prefer: respond-async");
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  while (Clock::now() < end && !service.stopping())
+    std::this_thread::sleep_for(
+        std::min<std::chrono::duration<double>>(std::chrono::milliseconds(50), end - Clock::now()));
+}
+
+Answer echo(Exchange& exchange) {
+  Submission submission = read_submission(exchange, {"s", "x"});
+  submission.inputs = read_echo_inputs(submission.inputs);
+  if (prefers_async(exchange.request)) return submit(exchange, &Jobs::submit_echo, submission);
+  wait(submission.inputs.value("pause", 0.0), exchange.service);
+  return results_answer(echo_results(submission.inputs, submission.outputs), submission.raw, exchange.request);
+}
+
+Answer execute(Exchange& exchange) {
+  const std::string& process = exchange.captured[0];
+  if (process == "influence-zone")
+    return submit(exchange, &Jobs::submit_study, read_submission(exchange, {"histogram", "summary"}));
+  if (process == "echo") return echo(exchange);
+  throw Refusal(reason::no_such_process, "there is no process with this ID; GET /processes lists them");
+}
 
 /// Every value of a parameter that may stand more than once and hold a list.
 std::vector<std::string> values_of(const Incoming& request, const std::string& name) {
   std::vector<std::string> all;
   const auto [first, last] = request.query.equal_range(name);
   for (auto at = first; at != last; ++at)
-    for (std::string& value : comma_list(at->second)) all.push_back(std::move(value));
+    for (std::string& value : split(at->second, ',')) all.push_back(std::move(value));
   return all;
 }
 
@@ -40,8 +150,7 @@ JobFilter filter_of(const Exchange& exchange) {
   const Incoming& request = exchange.request;
   only_parameters(request, {"limit", "status", "processID", "type", "datetime", "minDuration", "maxDuration", "after"});
   JobFilter filter{.subject = exchange.subject};
-  filter.limit = static_cast<int>(whole_number(request, "limit", 1, 1'000'000).value_or(default_limit));
-  filter.limit = std::min(filter.limit, max_limit);
+  filter.limit = page_limit(request);
   filter.before = whole_number(request, "after", 0, std::int64_t{1} << 62);
   for (const std::string& name : values_of(request, "status")) {
     const auto state = job_state(name);
@@ -58,10 +167,10 @@ JobFilter filter_of(const Exchange& exchange) {
   return filter;
 }
 
-Answer list_jobs(Exchange& exchange, Service& service) {
+Answer list_jobs(Exchange& exchange) {
   JobFilter filter = filter_of(exchange);
   const auto limit = static_cast<std::size_t>(filter.limit++);  // one more, to see whether there is more
-  std::vector<Job> jobs = service.store.jobs(filter);
+  std::vector<Job> jobs = exchange.service.store.jobs(filter);
   const bool more = jobs.size() > limit;
   if (more) jobs.resize(limit);
   Json all = Json::array(),
@@ -74,38 +183,38 @@ Answer list_jobs(Exchange& exchange, Service& service) {
   return json_answer({{"jobs", all}, {"links", links}});
 }
 
-Answer results(Exchange& exchange, Service& service) {
-  const Job job = job_of(exchange, service);
-  if (job.state == JobState::dismissed) throw Refusal(Reason::job_dismissed, "the job was dismissed");
-  if (job.state == JobState::failed) throw Refusal(Reason::unprocessable, "the job failed: " + job.message);
-  if (job.state != JobState::successful) throw Refusal(Reason::result_not_ready, "the job is still running");
+Answer results(Exchange& exchange) {
+  const Job job = job_of(exchange);
+  if (job.state == JobState::dismissed) throw Refusal(reason::job_dismissed, "the job was dismissed");
+  if (job.state == JobState::failed) throw Refusal(reason::unprocessable, "the job failed: " + job.message);
+  if (job.state != JobState::successful) throw Refusal(reason::result_not_ready, "the job is still running");
   const Json asked = Json::parse(job.inputs);
   const auto outputs = asked.at("outputs").get<std::vector<std::string>>();
   const bool raw = asked.value("raw", false);
   if (job.process == "echo") return results_answer(echo_results(asked.at("inputs"), outputs), raw, exchange.request);
   Json values = Json::object();
   for (const std::string& output : outputs) {
-    if (output == "summary") values[output] = service.jobs.summary(job);
+    if (output == "summary") values[output] = exchange.service.jobs.summary(job);
     if (output == "histogram")
-      values[output] = service.jobs.distribution(job, quantity_of(asked.at("quantity"), ""), {});
+      values[output] = exchange.service.jobs.distribution(job, quantity_of(asked.at("quantity"), ""), {});
   }
   return results_answer(values, raw, exchange.request);
 }
 
-Answer dismiss(Exchange& exchange, Service& service) {
-  const Job job = job_of(exchange, service);
-  service.jobs.dismiss(job);
-  return json_answer(status_info(*service.store.job(job.id), exchange));
+Answer dismiss(Exchange& exchange) {
+  const Job job = job_of(exchange);
+  exchange.service.jobs.dismiss(job);
+  return json_answer(status_info(*exchange.service.store.job(job.id), exchange));
 }
 
 }  // namespace
 
-void add_job_routes(Router& router, Service& service) {
-  router.add("GET", "/jobs", Role::read, [&service](Exchange& e) { return list_jobs(e, service); });
-  router.add("GET", "/jobs/{}", Role::read,
-             [&service](Exchange& e) { return json_answer(status_info(job_of(e, service), e)); });
-  router.add("DELETE", "/jobs/{}", Role::submit, [&service](Exchange& e) { return dismiss(e, service); });
-  router.add("GET", "/jobs/{}/results", Role::read, [&service](Exchange& e) { return results(e, service); });
+Routes job_routes() {
+  return {{"POST", "/processes/{}/execution", Role::submit, execute},
+          {"GET", "/jobs", Role::read, list_jobs},
+          {"GET", "/jobs/{}", Role::read, [](Exchange& e) { return json_answer(status_info(job_of(e), e)); }},
+          {"DELETE", "/jobs/{}", Role::submit, dismiss},
+          {"GET", "/jobs/{}/results", Role::read, results}};
 }
 
 }  // namespace talus::service

@@ -2,35 +2,25 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
+#include <cstdio>
 
 #include "base/digest.hpp"
-#include "http/links.hpp"
+#include "http/text.hpp"
+#include "support/text.hpp"
 
 namespace talus::service {
 namespace {
 
 constexpr std::size_t max_key = 200;
 
-template <class Number>
-std::optional<Number> parsed(const std::string& text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
-
 /// RFC 3986 2.1; a comma may stand for itself in a query.
 std::string percent_encoded(const std::string& text) {
-  constexpr const char* digits = "0123456789ABCDEF";
   std::string out;
   for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-                       std::string_view("-._~,").find(c) != std::string_view::npos;
-    if (plain)
-      out += c;
-    else
-      out += {'%', digits[byte >> 4], digits[byte & 15]};
+    char code[4] = {c};
+    if (!consists_of_letters_digits(code, "-._~,"))
+      std::snprintf(code, sizeof code, "%%%02X", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    out += code;
   }
   return out;
 }
@@ -38,7 +28,7 @@ std::string percent_encoded(const std::string& text) {
 std::string key_of(const Exchange& exchange) {
   const std::string key = exchange.request.header("idempotency-key");
   if (key.size() > max_key)
-    throw Refusal(Reason::bad_request, "Idempotency-Key is longer than " + std::to_string(max_key) + " characters");
+    throw Refusal(reason::bad_request, "Idempotency-Key is longer than " + std::to_string(max_key) + " characters");
   return key;
 }
 
@@ -46,23 +36,52 @@ std::string fingerprint(const Incoming& request) {
   return sha256(request.method + "\n" + request.path + "\n" + request.header("prefer") + "\n" + request.body);
 }
 
+std::int64_t progress(const Job& job) {
+  if (job.state == JobState::successful) return 100;
+  const std::int64_t all = job.planned + job.replicates, made = job.done + job.failed + job.replicates_ended;
+  return all > 0 ? std::min<std::int64_t>(99, 100 * made / all) : 0;
+}
+
+std::string message(const Job& job) {
+  if (ended(job.state)) return job.message;
+  if (job.state == JobState::accepted) return "waiting";
+  if (job.planned == 0) return "running";
+  std::string text = std::to_string(job.done) + " of " + std::to_string(job.planned) + " realizations done";
+  if (job.failed > 0) text += ", " + std::to_string(job.failed) + " failed";
+  if (!job.message.empty()) text += "; " + job.message;
+  return text;
+}
+
+Json links(const Job& job, const Exchange& exchange) {
+  const std::string path = "/jobs/" + job.id;
+  Json all = Json::array({link(exchange, path, "self", "This job")});  // a bare {link} is an object for some compilers
+  if (!ended(job.state)) all.push_back(link(exchange, path, "monitor", "Progress events"));
+  if (job.state == JobState::successful)
+    all.push_back(link(exchange, path + "/results", "http://www.opengis.net/def/rel/ogc/1.0/results", "Results"));
+  if (job.planned == 0 || job.state == JobState::dismissed) return all;
+  all.push_back(link(exchange, path + "/histogram", "related", "Histogram of the realizations done so far"));
+  all.push_back(link(exchange, path + "/realizations", "related", "Realizations"));
+  all.push_back(link(exchange, path + "/events", "related", "Events", event_stream));
+  return all;
+}
+
 }  // namespace
 
 void bad_parameter(const std::string& name, const std::string& why) {
-  throw Refusal(Reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
+  throw Refusal(reason::bad_request, "a query parameter is invalid", {{"?" + name, why}});
 }
 
-Job job_of(const Exchange& exchange, Service& service) {
-  std::optional<Job> job = service.store.job(exchange.captured.at(0));
-  if (!job || job->subject != exchange.subject) throw Refusal(Reason::no_such_job, "there is no job with this ID");
+Job job_of(const Exchange& exchange) {
+  std::optional<Job> job = exchange.service.store.job(exchange.captured.at(0));
+  if (!job || job->subject != exchange.subject) throw Refusal(reason::no_such_job, "there is no job with this ID");
   return *job;
 }
 
-Job study_of(const Exchange& exchange, Service& service) {
-  Job job = job_of(exchange, service);
-  if (job.process != "influence-zone") throw Refusal(Reason::not_found, "jobs of this process have no realizations");
+Job study_of(const Exchange& exchange) {
+  Job job = job_of(exchange);
+  if (job.process != "influence-zone") throw Refusal(reason::not_found, "jobs of this process have no realizations");
   if (job.state == JobState::dismissed)
-    throw Refusal(Reason::job_dismissed, "the job was dismissed and its files were removed");
+    throw Refusal(reason::job_dismissed, "the job was dismissed and its files were removed");
   return job;
 }
 
@@ -70,8 +89,9 @@ std::optional<std::int64_t> whole_number(const Incoming& request, const std::str
                                          std::int64_t most) {
   const auto text = request.parameter(name);
   if (!text) return std::nullopt;
-  const auto value = parsed<std::int64_t>(*text);
-  if (!value || *value < least || *value > most)
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
+  if (error != std::errc() || end != text->data() + text->size() || value < least || value > most)
     bad_parameter(name, "must be a whole number from " + std::to_string(least) + " to " + std::to_string(most));
   return value;
 }
@@ -79,9 +99,13 @@ std::optional<std::int64_t> whole_number(const Incoming& request, const std::str
 std::optional<double> real_number(const Incoming& request, const std::string& name) {
   const auto text = request.parameter(name);
   if (!text) return std::nullopt;
-  const auto value = parsed<double>(*text);
-  if (!value || !std::isfinite(*value)) bad_parameter(name, "must be a number");
+  const std::optional<double> value = to_number(*text);
+  if (!value) bad_parameter(name, "must be a number");
   return value;
+}
+
+int page_limit(const Incoming& request) {
+  return static_cast<int>(std::min<std::int64_t>(1000, whole_number(request, "limit", 1, 1'000'000).value_or(100)));
 }
 
 void only_parameters(const Incoming& request, std::initializer_list<const char*> known) {
@@ -101,46 +125,62 @@ std::string query_text(const Incoming& request, const std::optional<std::pair<st
   return text;
 }
 
-std::vector<std::string> comma_list(const std::string& text) {
-  std::vector<std::string> all;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find(',', start), text.size());
-    all.push_back(text.substr(start, end - start));
-    start = end + 1;
-  }
-  return all;
-}
-
-std::optional<Answer> told_before(const Exchange& exchange, Service& service) {
+std::optional<Answer> stored_answer(const Exchange& exchange) {
   const std::string key = key_of(exchange);
   if (key.empty()) return std::nullopt;
-  const auto kept = service.store.remembered(exchange.subject, key);
-  if (!kept) return std::nullopt;
-  if (kept->body_hash != fingerprint(exchange.request))
-    throw Refusal(Reason::unprocessable, "this Idempotency-Key was already used for a different request");
-  Answer answer{.status = kept->status, .body = kept->body};
-  if (!kept->location.empty()) answer.headers.emplace_back("Location", kept->location);
+  const auto stored = exchange.service.store.stored_response(exchange.subject, key);
+  if (!stored) return std::nullopt;
+  if (stored->body_hash != fingerprint(exchange.request))
+    throw Refusal(reason::unprocessable, "this Idempotency-Key was already used for a different request");
+  Answer answer{.status = stored->status, .body = stored->body};
+  if (!stored->location.empty()) answer.headers.emplace_back("Location", stored->location);
   return answer;
 }
 
-Store::Answer keeping(const Exchange& exchange, int status, bool with_location) {
+Store::Response response_to_store(const Exchange& exchange, int status) {
   const std::string key = key_of(exchange);
   if (key.empty()) return {};
-  return [&exchange, status, with_location, key](const Job& job) {
-    const Answer answer = changed(exchange, job, status, with_location);
-    return Remembered{.subject = exchange.subject,
-                      .key = key,
-                      .body_hash = fingerprint(exchange.request),
-                      .status = status,
-                      .location = with_location ? exchange.base + "/jobs/" + job.id : "",
-                      .body = answer.body};
+  return [&exchange, status, key](const Job& job) {
+    const Answer answer = changed(exchange, job, status);
+    return StoredResponse{.subject = exchange.subject,
+                          .key = key,
+                          .body_hash = fingerprint(exchange.request),
+                          .status = status,
+                          .location = answer.headers.empty() ? "" : answer.headers.front().second,
+                          .body = answer.body};
   };
 }
 
-Answer changed(const Exchange& exchange, const Job& job, int status, bool with_location) {
+Answer changed(const Exchange& exchange, const Job& job, int status) {
   Answer answer = json_answer(status_info(job, exchange), status);
-  if (with_location) answer.headers.emplace_back("Location", exchange.base + "/jobs/" + job.id);
+  if (status == 201) answer.headers.emplace_back("Location", exchange.base + "/jobs/" + job.id);
   return answer;
+}
+
+Json link(const Exchange& exchange, const std::string& path, const std::string& rel, const std::string& title,
+          const std::string& type) {
+  return {{"href", exchange.base + path}, {"rel", rel}, {"type", type}, {"title", title}};
+}
+
+Json status_info(const Job& job, const Exchange& exchange) {
+  Json info = {{"jobID", job.id},
+               {"processID", job.process},
+               {"type", "process"},
+               {"status", word(job.state)},
+               {"message", message(job)},
+               {"created", utc_text(job.created)},
+               {"updated", utc_text(job.updated)},
+               {"progress", progress(job)}};
+  if (job.started) info["started"] = utc_text(*job.started);
+  if (!ended(job.state) && !job.message.empty()) info["waits"] = job.message;
+  if (job.finished) info["finished"] = utc_text(*job.finished);
+  if (job.planned > 0) {
+    info["title"] = job.title;
+    info["seed"] = job.seed;
+    info["realizations"] = {{"planned", job.planned}, {"done", job.done}, {"failed", job.failed}};
+  }
+  info["links"] = links(job, exchange);
+  return info;
 }
 
 }  // namespace talus::service

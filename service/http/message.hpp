@@ -1,6 +1,7 @@
 #pragma once
 // Request and answer as the handlers see them, independent of the HTTP library.
 
+#include <exception>
 #include <functional>
 #include <map>
 #include <optional>
@@ -42,9 +43,12 @@ struct Answer {
   std::function<void(const Sink&)> stream = {};  ///< instead of a body
 };
 
-/// A request being handled: caller and captured parts of the path.
+struct Service;
+
+/// A request being handled, its sender, and the captured parts of the path.
 struct Exchange {
-  const Incoming& request;
+  Service& service;
+  Incoming request;
   std::vector<std::string> captured = {};  ///< path segments that match the {} of the route
   std::string subject = "local";
   Role role = Role::submit;
@@ -52,5 +56,18 @@ struct Exchange {
 };
 
 inline Answer json_answer(const Json& body, int status = 200) { return {.status = status, .body = dump(body) + "\n"}; }
+
+/// The problem document (RFC 9457) of a refused request: {type, title, status, detail, errors}.
+/// @param accept  the client's Accept header: problem+json only for clients that ask for it
+Answer problem(const Refusal& refusal, const std::string& accept);
+
+/// The answer to any exception; details are given only where a client can act on them.
+Answer problem(std::exception_ptr thrown, const std::string& accept);
+
+/// The same by status, for errors detected by the guard or the HTTP library.
+/// @param detail  empty: the title of the status
+Answer problem(int status, const std::string& accept, const std::string& detail = {});
+
+const char* status_text(int status);
 
 }  // namespace talus::service

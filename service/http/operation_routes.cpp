@@ -8,72 +8,74 @@ namespace {
 
 Answer healthy(Exchange&) { return json_answer({{"status", "ok"}}); }
 
-Answer ready(Service& service) {
+Answer ready(Exchange& exchange) {
+  const Service& service = exchange.service;
   service.store.open_jobs({});  // throws when the queue cannot be read
-  if (service.stopping()) throw Refusal(Reason::unavailable, "talusd is stopping");
+  if (service.stopping()) throw Refusal(reason::unavailable, "talusd is stopping");
   if (disk_left(service.config.data) < service.config.quotas.disk_bytes)
-    throw Refusal(Reason::unavailable, "the disk has less free space than --min-disk requires");
+    throw Refusal(reason::unavailable, "the disk has less free space than --min-disk requires");
   return json_answer({{"status", "ready"}});
 }
 
-/// The text format of Prometheus.
-class Metrics {
- public:
-  void family(const char* name, const char* type, const char* help) {
-    text_ += std::string("# HELP ") + name + " " + help + "\n# TYPE " + name + " " + type + "\n";
-    name_ = name;
-  }
-  void value(double value, const std::string& labels = {}) {
-    text_ += name_ + (labels.empty() ? "" : "{" + labels + "}") + " " + Json(value).dump() + "\n";
-  }
-  void part(const std::string& suffix, double value) { text_ += name_ + suffix + " " + Json(value).dump() + "\n"; }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_, name_;
+/// One sample of a metric: what follows the name of its family, and the value.
+struct Sample {
+  std::string suffix;  ///< "", "_sum" or {labels}
+  double value;
 };
 
-Answer metrics(Service& service) {
-  const Census census = service.store.census();
-  const WorkDone& done = service.scheduler.work_done();
-  Metrics m;
-  m.family("talus_jobs", "gauge", "Jobs by status.");
-  for (int i = 0; i < 5; ++i)
-    m.value(static_cast<double>(census.jobs[static_cast<std::size_t>(i)]),
-            std::string("status=\"") + word(static_cast<JobState>(i)) + "\"");
-  m.family("talus_queue_depth", "gauge", "Runs waiting for a worker.");
-  m.value(static_cast<double>(census.runs[static_cast<std::size_t>(RunState::queued)]));
-  m.family("talus_workers", "gauge", "Workers.");
-  m.value(service.config.workers, "state=\"all\"");
-  m.value(done.running, "state=\"busy\"");
-  m.family("talus_realizations_total", "counter", "Runs ended since talusd started, by outcome.");
-  m.value(static_cast<double>(done.done), "outcome=\"done\"");
-  m.value(static_cast<double>(done.failed), "outcome=\"failed\"");
-  m.value(static_cast<double>(done.crashed), "outcome=\"crashed_and_requeued\"");
-  m.value(static_cast<double>(done.given_back), "outcome=\"given_back\"");
-  m.value(static_cast<double>(done.stale), "outcome=\"stale\"");
-  m.family("talus_realization_seconds", "summary", "Wall-clock time of successful runs.");
-  m.part("_sum", static_cast<double>(done.wall_clock_ms) / 1000.0);
-  m.part("_count", static_cast<double>(done.done));
-  m.family("talus_orphans", "gauge", "Directories of unknown jobs that were moved to DATA/orphans at start.");
-  m.value(done.orphans);
-  m.family("talus_disk_left_bytes", "gauge", "Free disk space of the data directory.");
-  m.value(static_cast<double>(disk_left(service.config.data)));
-  m.family("talus_http_requests_total", "counter", "Requests answered.");
-  m.value(static_cast<double>(service.requests));
-  m.family("talus_http_failures_total", "counter", "Requests answered with 5xx.");
-  m.value(static_cast<double>(service.failures));
-  m.family("talus_event_streams", "gauge", "Open event streams.");
-  m.value(service.streams);
-  return {.type = "text/plain; version=0.0.4", .body = m.text()};
+/// A family of metrics in the text format of Prometheus.
+std::string family(const std::string& name, const char* type, const char* help, const std::vector<Sample>& samples) {
+  std::string text = "# HELP " + name + " " + help + "\n# TYPE " + name + " " + type + "\n";
+  for (const Sample& sample : samples) text += name + sample.suffix + " " + Json(sample.value).dump() + "\n";
+  return text;
+}
+
+std::string label(const std::string& name, const std::string& value) { return "{" + name + "=\"" + value + "\"}"; }
+
+Answer metrics(Exchange& exchange) {
+  using Kind = RunEvent::Kind;
+  const Service& service = exchange.service;
+  const StateCounts counts = service.store.state_counts();
+  const RunCounters& runs = service.scheduler.counters();
+  const auto ended = [&](Kind kind) { return static_cast<double>(runs.ended[static_cast<std::size_t>(kind)]); };
+  const double done = ended(Kind::done) + ended(Kind::taken_over);
+  std::vector<Sample> jobs;
+  for (std::size_t i = 0; i < counts.jobs.size(); ++i)
+    jobs.push_back({label("status", job_words[i]), static_cast<double>(counts.jobs[i])});
+  const auto queued = static_cast<double>(counts.runs[static_cast<std::size_t>(RunState::queued)]);
+  return {
+      .type = "text/plain; version=0.0.4",
+      .body =
+          family("talus_jobs", "gauge", "Jobs by status.", jobs) +
+          family("talus_queue_depth", "gauge", "Runs waiting for a worker.", {{"", queued}}) +
+          family("talus_workers", "gauge", "Workers.",
+                 {{label("state", "all"), static_cast<double>(service.config.workers)},
+                  {label("state", "busy"), static_cast<double>(runs.running)}}) +
+          family("talus_realizations_total", "counter", "Runs ended since talusd started, by outcome.",
+                 {{label("outcome", "done"), done},
+                  {label("outcome", "failed"), ended(Kind::failed)},
+                  {label("outcome", "crashed_and_requeued"), ended(Kind::crashed)},
+                  {label("outcome", "given_back"), ended(Kind::given_back)},
+                  {label("outcome", "stale"), ended(Kind::stale)}}) +
+          family("talus_realization_seconds", "summary", "Wall-clock time of successful runs.",
+                 {{"_sum", static_cast<double>(runs.wall_clock_ms) / 1000.0}, {"_count", done}}) +
+          family("talus_orphans", "gauge", "Directories of unknown jobs that were moved to DATA/orphans at start.",
+                 {{"", static_cast<double>(runs.orphans)}}) +
+          family("talus_disk_left_bytes", "gauge", "Free disk space of the data directory.",
+                 {{"", static_cast<double>(disk_left(service.config.data))}}) +
+          family("talus_http_requests_total", "counter", "Requests answered.",
+                 {{"", static_cast<double>(service.requests)}}) +
+          family("talus_http_failures_total", "counter", "Requests answered with 5xx.",
+                 {{"", static_cast<double>(service.failures)}}) +
+          family("talus_event_streams", "gauge", "Open event streams.", {{"", static_cast<double>(service.streams)}})};
 }
 
 }  // namespace
 
-void add_operation_routes(Router& router, Service& service) {
-  router.add("GET", "/healthz", Role::none, healthy);
-  router.add("GET", "/readyz", Role::none, [&service](Exchange&) { return ready(service); });
-  router.add("GET", "/metrics", Role::read, [&service](Exchange&) { return metrics(service); });
+Routes operation_routes() {
+  return {{"GET", "/healthz", Role::none, healthy},
+          {"GET", "/readyz", Role::none, ready},
+          {"GET", "/metrics", Role::read, metrics}};
 }
 
 }  // namespace talus::service

@@ -1,92 +1,46 @@
-#include "http/problem.hpp"
-
 #include <cerrno>
 #include <filesystem>
 
-#include "base/log.hpp"
+#include "base/json.hpp"
+#include "http/message.hpp"
 #include "queue/database.hpp"
 #include "support/files.hpp"
 
 namespace talus::service {
 namespace {
 
-struct Row {
-  Reason reason;
-  int status;
-  const char* type;
-  const char* title;
-};
+/// Statuses that the guard or the HTTP library answers and no handler does.
+constexpr Reason other_reasons[] = {{408, "about:blank", "Request timeout"},
+                                    {417, "about:blank", "Expectation failed"},
+                                    {505, "about:blank", "HTTP version not supported"}};
 
-#define OGC_EXCEPTION "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
-
-constexpr Row table[] = {
-    {Reason::bad_request, 400, "urn:talus:problem:bad-request", "Bad request"},
-    {Reason::unauthorized, 401, "urn:talus:problem:unauthorized", "A token is required"},
-    {Reason::forbidden, 403, "urn:talus:problem:forbidden", "Not allowed"},
-    {Reason::not_found, 404, "urn:talus:problem:not-found", "Not found"},
-    {Reason::no_such_process, 404, OGC_EXCEPTION "no-such-process", "No such process"},
-    {Reason::no_such_job, 404, OGC_EXCEPTION "no-such-job", "No such job"},
-    {Reason::result_not_ready, 404, OGC_EXCEPTION "result-not-ready", "The result is not ready"},
-    {Reason::job_dismissed, 410, "urn:talus:problem:job-dismissed", "The job was dismissed"},
-    {Reason::method_not_allowed, 405, "urn:talus:problem:method-not-allowed", "Method not allowed"},
-    {Reason::not_acceptable, 406, "urn:talus:problem:not-acceptable", "No acceptable representation"},
-    {Reason::conflict, 409, "urn:talus:problem:conflict", "Conflict with the current state"},
-    {Reason::length_required, 411, "urn:talus:problem:length-required", "Content-Length is required"},
-    {Reason::too_large, 413, "urn:talus:problem:too-large", "Too large"},
-    {Reason::uri_too_long, 414, "urn:talus:problem:uri-too-long", "The URI is too long"},
-    {Reason::unsupported_media_type, 415, "urn:talus:problem:unsupported-media-type", "Unsupported media type"},
-    {Reason::unprocessable, 422, "urn:talus:problem:unprocessable", "Unprocessable request"},
-    {Reason::quota, 422, "urn:talus:problem:quota-exceeded", "Quota exceeded"},
-    {Reason::queue_full, 429, "urn:talus:problem:queue-full", "The queue is full"},
-    {Reason::headers_too_large, 431, "urn:talus:problem:headers-too-large", "The headers are too large"},
-    {Reason::internal, 500, "urn:talus:problem:internal", "Internal error"},
-    {Reason::not_implemented, 501, "urn:talus:problem:not-implemented", "Not implemented"},
-    {Reason::unavailable, 503, "urn:talus:problem:unavailable", "Temporarily unavailable"},
-    {Reason::timeout, 504, "urn:talus:problem:timeout", "Time limit exceeded"},
-    {Reason::disk_full, 507, "urn:talus:problem:disk-full", "Insufficient storage"},
-};
-
-const Row& row_of(Reason reason) {
-  for (const Row& row : table)
-    if (row.reason == reason) return row;
-  return row_of(Reason::internal);
-}
-
-Answer document(int status, const char* type, const char* title, const Refusal& refusal, const std::string& accept) {
-  Json body = {{"type", type}, {"title", title}, {"status", status}, {"detail", refusal.what()}};
-  if (!refusal.faults.empty()) {
-    body["errors"] = Json::array();
-    for (const Fault& fault : refusal.faults)
-      body["errors"].push_back({{"pointer", fault.pointer}, {"message", fault.message}});
-  }
-  Answer answer = json_answer(body, status);
-  if (accept.find("application/problem+json") != std::string::npos) answer.type = "application/problem+json";
-  if (!refusal.allow.empty()) answer.headers.emplace_back("Allow", refusal.allow);
-  if (status == 401) answer.headers.emplace_back("WWW-Authenticate", "Bearer");
-  if (refusal.retry_after) answer.headers.emplace_back("Retry-After", std::to_string(*refusal.retry_after));
-  return answer;
-}
-
-Refusal refusal_of(const StorageError& e) {
-  const bool full = e.kind == StorageError::Kind::full;
-  Refusal refusal(full ? Reason::disk_full : Reason::unavailable, e.what());
-  refusal.retry_after = 30;
-  return refusal;
+Reason reason_of(int status) {
+  for (const Reason* reason : reason::all)
+    if (reason->status == status) return *reason;
+  for (const Reason& reason : other_reasons)
+    if (reason.status == status) return reason;
+  return {status, "about:blank", status < 500 ? "Bad request" : "Internal error"};
 }
 
 Answer file_problem(int error, const char* what, const std::string& accept) {
   log_error("files", {{"why", what}});
-  const bool full = error == ENOSPC || error == EDQUOT;
-  return problem(Refusal(full ? Reason::disk_full : Reason::unavailable,
-                         full ? "the disk is full" : "the service cannot read or write one of its files"),
-                 accept);
+  if (error == ENOSPC || error == EDQUOT) return problem(Refusal(reason::disk_full, "the disk is full"), accept);
+  return problem(Refusal(reason::unavailable, "the service cannot read or write one of its files"), accept);
 }
 
 }  // namespace
 
 Answer problem(const Refusal& refusal, const std::string& accept) {
-  const Row& row = row_of(refusal.reason);
-  return document(row.status, row.type, row.title, refusal, accept);
+  const Reason& reason = refusal.reason;
+  Json body = {{"type", reason.type}, {"title", reason.title}, {"status", reason.status}, {"detail", refusal.what()}};
+  for (const Fault& fault : refusal.faults)
+    body["errors"].push_back({{"pointer", fault.pointer}, {"message", fault.message}});
+  Answer answer = json_answer(body, reason.status);
+  if (accept.find("application/problem+json") != std::string::npos) answer.type = "application/problem+json";
+  if (!refusal.allow.empty()) answer.headers.emplace_back("Allow", refusal.allow);
+  if (reason == reason::unauthorized) answer.headers.emplace_back("WWW-Authenticate", "Bearer");
+  if (refusal.retry_after) answer.headers.emplace_back("Retry-After", std::to_string(*refusal.retry_after));
+  return answer;
 }
 
 Answer problem(std::exception_ptr thrown, const std::string& accept) {
@@ -96,38 +50,22 @@ Answer problem(std::exception_ptr thrown, const std::string& accept) {
     return problem(e, accept);
   } catch (const StorageError& e) {
     log_error("storage", {{"why", e.what()}});
-    return problem(refusal_of(e), accept);
+    return problem(Refusal(e.disk_full ? reason::disk_full : reason::unavailable, e.what(), {}, 30), accept);
   } catch (const IoError& e) {
     return file_problem(e.error, e.what(), accept);
   } catch (const std::filesystem::filesystem_error& e) {
     return file_problem(e.code().value(), e.what(), accept);
   } catch (const std::exception& e) {
     log_error("internal", {{"why", e.what()}});
-    return problem(Refusal(Reason::internal, "internal error; details are in the log of talusd"), accept);
+    return problem(Refusal(reason::internal, "internal error; details are in the log of talusd"), accept);
   }
 }
 
-Answer problem(int status, const std::string& accept) {
-  for (const Row& row : table)
-    if (row.status == status) return problem(Refusal(row.reason, row.title), accept);
-  const char* title = status_text(status);
-  return document(status, "about:blank", title, Refusal(Reason::bad_request, title), accept);
+Answer problem(int status, const std::string& accept, const std::string& detail) {
+  const Reason reason = reason_of(status);
+  return problem(Refusal(reason, detail.empty() ? reason.title : detail), accept);
 }
 
-const char* status_text(int status) {
-  switch (status) {
-    case 408:
-      return "Request timeout";
-    case 417:
-      return "Expectation failed";
-    case 505:
-      return "HTTP version not supported";
-    default:
-      break;
-  }
-  for (const Row& row : table)
-    if (row.status == status) return row.title;
-  return status < 500 ? "Bad request" : "Internal error";
-}
+const char* status_text(int status) { return reason_of(status).title; }
 
 }  // namespace talus::service

@@ -1,11 +1,11 @@
-// Ours beneath a study: its histogram as it grows, and its realizations one by one.
+// Extensions of a job that is a study: its current histogram, its realizations, retry and extend.
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
-#include "http/links.hpp"
 #include "http/lookup.hpp"
+#include "http/text.hpp"
+#include "support/text.hpp"
 
 namespace talus::service {
 namespace {
@@ -17,12 +17,10 @@ std::vector<double> edges_of(const Incoming& request) {
   std::vector<double> edges;
   const auto text = request.parameter("edges");
   if (!text) return edges;
-  for (const std::string& part : comma_list(*text)) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error != std::errc() || end != part.data() + part.size() || !std::isfinite(value))
-      bad_parameter("edges", "must be numbers separated by commas");
-    edges.push_back(value);
+  for (const std::string& part : split(*text, ',')) {
+    const std::optional<double> value = to_number(part);
+    if (!value) bad_parameter("edges", "must be numbers separated by commas");
+    edges.push_back(*value);
   }
   const bool grow = std::adjacent_find(edges.begin(), edges.end(), std::greater_equal<>()) == edges.end();
   if (edges.size() < 2 || edges.size() > max_edges || !grow)
@@ -47,43 +45,40 @@ Json bins_of(const Json& distribution, const Exchange& exchange, const Job& job)
   return bins;
 }
 
-Answer histogram(Exchange& exchange, Service& service) {
+Answer histogram(Exchange& exchange) {
   const Incoming& request = exchange.request;
-  const Job job = study_of(exchange, service);
+  const Job job = study_of(exchange);
   only_parameters(request, {"quantity", "bins", "edges"});
   const std::string name = request.parameter("quantity").value_or(Json::parse(job.inputs).at("quantity"));
   const Measure& quantity = quantity_of(name, "?quantity");
   const auto bins = whole_number(request, "bins", 1, max_bins);
   const std::vector<double> edges = edges_of(request);
   if (bins && !edges.empty()) bad_parameter("bins", "cannot be combined with edges");
-  Json answer =
-      service.jobs.distribution(job, quantity, {.count = static_cast<std::size_t>(bins.value_or(0)), .edges = edges});
+  Json answer = exchange.service.jobs.distribution(
+      job, quantity, {.count = static_cast<std::size_t>(bins.value_or(0)), .edges = edges});
   answer["partial"] = !ended(job.state);
   answer["bins"] = bins_of(answer, exchange, job);
   return json_answer(answer);
 }
 
-Json measures_of(const Record& result) {
-  Json all = Json::object();
-  for (const Measure& measure : measure_table) all[measure.key] = result.measures.*measure.member;
-  return all;
+std::string path_of(const Job& job, std::int64_t index) {
+  return "/jobs/" + job.id + "/realizations/" + std::to_string(index);
 }
 
 Json brief(const Run& run, const Exchange& exchange, const Job& job) {
-  const std::string path = "/jobs/" + job.id + "/realizations/" + std::to_string(run.key.index);
   Json json = {{"index", run.key.index}, {"state", word(run.state)}};
   if (run.result) {
-    json["measures"] = measures_of(*run.result);
+    for (const Measure& measure : measure_table) json["measures"][measure.key] = run.result->measures.*measure.member;
     json["digest"] = run.result->digest;
   }
   if (run.failure) json["reason"] = run.failure->reason;
-  json["href"] = exchange.base + path;
+  json["href"] = exchange.base + path_of(job, run.key.index);
   return json;
 }
 
-Answer list_realizations(Exchange& exchange, Service& service) {
+Answer list_realizations(Exchange& exchange) {
   const Incoming& request = exchange.request;
-  const Job job = study_of(exchange, service);
+  const Job job = study_of(exchange);
   only_parameters(request, {"state", "quantity", "min", "below", "max", "after", "limit"});
   RunFilter filter;
   if (const auto name = request.parameter("state")) {
@@ -95,10 +90,9 @@ Answer list_realizations(Exchange& exchange, Service& service) {
   filter.below = real_number(request, "below");
   filter.most = real_number(request, "max");
   filter.after = whole_number(request, "after", -1, most_realizations).value_or(-1);
-  const auto limit =
-      std::min<std::int64_t>(max_limit, whole_number(request, "limit", 1, 1'000'000).value_or(default_limit));
-  filter.limit = static_cast<int>(limit) + 1;
-  std::vector<Run> runs = service.store.runs(job.number, filter);
+  const int limit = page_limit(request);
+  filter.limit = limit + 1;  // one more, to see whether there is a next page
+  std::vector<Run> runs = exchange.service.store.runs(job.number, filter);
   const bool more = runs.size() > static_cast<std::size_t>(limit);
   if (more) runs.resize(static_cast<std::size_t>(limit));
   Json all = Json::array(), links = Json::array();
@@ -110,20 +104,20 @@ Answer list_realizations(Exchange& exchange, Service& service) {
   return json_answer({{"realizations", all}, {"links", links}});
 }
 
-Run run_of(const Exchange& exchange, Service& service, const Job& job) {
+Run run_of(const Exchange& exchange, const Job& job) {
   const std::string& text = exchange.captured.at(1);
   std::int64_t index = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), index);
   std::optional<Run> run;
   if (error == std::errc() && end == text.data() + text.size() && index >= 0)
-    run = service.store.run(job.number, realization(index));
-  if (!run) throw Refusal(Reason::not_found, "the study has no such realization");
+    run = exchange.service.store.run(job.number, realization(index));
+  if (!run) throw Refusal(reason::not_found, "the study has no such realization");
   return *run;
 }
 
-Answer one(Exchange& exchange, Service& service) {
-  const Job job = study_of(exchange, service);
-  const Run run = run_of(exchange, service, job);
+Answer one(Exchange& exchange) {
+  const Job job = study_of(exchange);
+  const Run run = run_of(exchange, job);
   Json json = brief(run, exchange, job);
   json["seed"] = job.seed;
   json["case_hash"] = job.case_hash;
@@ -139,7 +133,7 @@ Answer one(Exchange& exchange, Service& service) {
     if (run.failure->signal) json["signal"] = *run.failure->signal;
     json["log_tail"] = run.failure->log_tail;
   }
-  const std::string path = "/jobs/" + job.id + "/realizations/" + std::to_string(run.key.index);
+  const std::string path = path_of(job, run.key.index);
   json["links"] = {link(exchange, path, "self", "This realization"),
                    link(exchange, path + "/field", "related", "Friction angles before failure"),
                    link(exchange, path + "/profile", "related", "Profile at the end of the run")};
@@ -155,59 +149,50 @@ bool wants_svg(const Incoming& request) {
   return *format == "svg";
 }
 
-Answer picture(const std::string& text, bool svg) {
-  return {.type = svg ? "image/svg+xml" : "application/json", .body = text};
-}
-
-Answer field(Exchange& exchange, Service& service) {
-  const Job job = study_of(exchange, service);
-  const Run run = run_of(exchange, service, job);
+/// A file that `make` makes of one run, as SVG or JSON.
+Answer picture(Exchange& exchange, std::string (Jobs::*make)(const Job&, std::int64_t, bool), bool needs_result) {
+  const Job job = study_of(exchange);
+  const Run run = run_of(exchange, job);
   const bool svg = wants_svg(exchange.request);
-  return picture(service.jobs.field(job, run.key.index, svg), svg);
+  if (needs_result && !run.result) throw Refusal(reason::result_not_ready, "this realization has no result yet");
+  return {.type = svg ? "image/svg+xml" : "application/json",
+          .body = (exchange.service.jobs.*make)(job, run.key.index, svg)};
 }
 
-Answer profile(Exchange& exchange, Service& service) {
-  const Job job = study_of(exchange, service);
-  const Run run = run_of(exchange, service, job);
-  const bool svg = wants_svg(exchange.request);
-  if (run.state != RunState::done) throw Refusal(Reason::result_not_ready, "this realization has no result yet");
-  return picture(service.jobs.profile(job, run.key.index, svg), svg);
+Answer field(Exchange& exchange) { return picture(exchange, &Jobs::field, false); }
+Answer profile(Exchange& exchange) { return picture(exchange, &Jobs::profile, true); }
+
+Answer retry(Exchange& exchange) {
+  if (auto again = stored_answer(exchange)) return *again;
+  const Job job = study_of(exchange);
+  exchange.service.jobs.retry(job, response_to_store(exchange, 200));
+  return changed(exchange, *exchange.service.store.job(job.id));
 }
 
-Answer retry(Exchange& exchange, Service& service) {
-  if (auto again = told_before(exchange, service)) return *again;
-  const Job job = study_of(exchange, service);
-  service.jobs.retry(job, keeping(exchange, 200, false));
-  return changed(exchange, *service.store.job(job.id), 200, false);
-}
-
-Answer extend(Exchange& exchange, Service& service) {
-  if (auto again = told_before(exchange, service)) return *again;
-  const Job job = study_of(exchange, service);
+Answer extend(Exchange& exchange) {
+  if (auto again = stored_answer(exchange)) return *again;
+  const Job job = study_of(exchange);
   const Json body = parse_body(exchange.request.body);
   const bool good = body.is_object() && body.contains("realizations") && body.at("realizations").is_number_integer() &&
                     body.at("realizations") >= 1 && body.at("realizations") <= most_realizations;
   if (!good || body.size() != 1)
-    throw Refusal(Reason::bad_request, "the request body is invalid",
+    throw Refusal(reason::bad_request, "the request body is invalid",
                   {{"/realizations", "must be the number of realizations to add, at least 1, and the only member"}});
-  if (!service.jobs.extend(job, body.at("realizations").get<std::int64_t>(), keeping(exchange, 200, false)))
-    if (auto again = told_before(exchange, service)) return *again;
-  return changed(exchange, study_of(exchange, service), 200, false);  // dismissed meanwhile: 410
+  if (!exchange.service.jobs.extend(job, body.at("realizations").get<std::int64_t>(), response_to_store(exchange, 200)))
+    if (auto again = stored_answer(exchange)) return *again;
+  return changed(exchange, study_of(exchange));  // dismissed meanwhile: 410
 }
 
 }  // namespace
 
-void add_realization_routes(Router& router, Service& service) {
-  const auto add = [&](const char* method, const std::string& tail, Role role, Answer (*handler)(Exchange&, Service&)) {
-    router.add(method, "/jobs/{}" + tail, role, [&service, handler](Exchange& e) { return handler(e, service); });
-  };
-  add("GET", "/histogram", Role::read, histogram);
-  add("GET", "/realizations", Role::read, list_realizations);
-  add("GET", "/realizations/{}", Role::read, one);
-  add("GET", "/realizations/{}/field", Role::read, field);
-  add("GET", "/realizations/{}/profile", Role::read, profile);
-  add("POST", "/retry", Role::submit, retry);
-  add("POST", "/extend", Role::submit, extend);
+Routes realization_routes() {
+  return {{"GET", "/jobs/{}/histogram", Role::read, histogram},
+          {"GET", "/jobs/{}/realizations", Role::read, list_realizations},
+          {"GET", "/jobs/{}/realizations/{}", Role::read, one},
+          {"GET", "/jobs/{}/realizations/{}/field", Role::read, field},
+          {"GET", "/jobs/{}/realizations/{}/profile", Role::read, profile},
+          {"POST", "/jobs/{}/retry", Role::submit, retry},
+          {"POST", "/jobs/{}/extend", Role::submit, extend}};
 }
 
 }  // namespace talus::service

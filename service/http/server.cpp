@@ -6,8 +6,7 @@
 #include <atomic>
 
 #include "base/clock.hpp"
-#include "base/log.hpp"
-#include "http/problem.hpp"
+#include "http/text.hpp"
 
 namespace talus::service {
 namespace {
@@ -51,14 +50,8 @@ class RequestStream : public httplib::Stream {
     begun_ = true;
     return good ? static_cast<ssize_t>(size) : -1;
   }
-  void get_remote_ip_and_port(std::string& ip, int& port) const {
-    ip.clear();
-    port = 0;
-  }
-  void get_local_ip_and_port(std::string& ip, int& port) const {
-    ip.clear();
-    port = 0;
-  }
+  void get_remote_ip_and_port(std::string&, int&) const {}
+  void get_local_ip_and_port(std::string&, int&) const {}
   socket_t socket() const { return connection_.socket(); }
 
  private:
@@ -69,33 +62,29 @@ class RequestStream : public httplib::Stream {
 };
 
 Incoming incoming(const httplib::Request& request) {
-  Incoming in;
-  in.method = request.method;
-  in.path = request.path;
-  for (const auto& [name, value] : request.params) in.query.emplace(name, value);
+  Incoming in{.method = request.method,
+              .path = request.path,
+              .query = {request.params.begin(), request.params.end()},
+              .headers = {},
+              .body = request.body};
   for (const auto& [name, value] : request.headers) {
-    std::string small;
-    for (const char c : name) small += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    std::string& slot = in.headers[small == "x-body-type" ? "content-type" : small];
+    const std::string key = lower(name);
+    std::string& slot = in.headers[key == lower(body_type_header) ? "content-type" : key];
     slot += slot.empty() ? value : ", " + value;  // RFC 9110 5.2
   }
-  in.body = request.body;
   return in;
 }
 
-/// An HTTP/1.0 client (`chunked` is false) knows no chunks: its stream ends with the connection.
+/// An HTTP/1.0 client (`chunked` is false) does not understand chunks: its stream ends with the connection.
 void fill_stream(httplib::Response& response, const Answer& answer, bool chunked) {
-  const auto pour = [stream = answer.stream](httplib::DataSink& sink) {
+  const auto pour = [stream = answer.stream](size_t, httplib::DataSink& sink) {
     stream([&sink](const std::string& piece) { return sink.write(piece.data(), piece.size()); });
     sink.done();
+    return true;
   };
-  if (chunked) {
-    response.set_chunked_content_provider(answer.type,
-                                          [pour](size_t, httplib::DataSink& sink) { return pour(sink), true; });
-    return;
-  }
+  if (chunked) return response.set_chunked_content_provider(answer.type, pour);
   response.set_header("Connection", "close");
-  response.set_content_provider(answer.type, [pour](size_t, httplib::DataSink& sink) { return pour(sink), true; });
+  response.set_content_provider(answer.type, pour);
 }
 
 void fill(httplib::Response& response, Answer answer, bool chunked = true) {
@@ -114,10 +103,7 @@ void fill(httplib::Response& response, Answer answer, bool chunked = true) {
 
 /// A refusal written without the library.
 std::string raw_problem(const BadRequest& bad) {
-  const Answer answer = problem(bad.status, "");
-  Json body = Json::parse(answer.body);
-  body["detail"] = bad.why;
-  const std::string text = dump(body) + "\n";
+  const std::string text = problem(bad.status, "", bad.why).body;
   return "HTTP/1.1 " + std::to_string(bad.status) + " " + status_text(bad.status) +
          "\r\nDate: " + http_date(system_now()) +
          "\r\nContent-Type: application/json\r\nContent-Length: " + std::to_string(text.size()) +
@@ -128,10 +114,12 @@ std::string raw_problem(const BadRequest& bad) {
 
 class Server::Implementation : public httplib::Server {
  public:
-  Implementation(ServerSettings settings, std::function<Answer(const Incoming&)> handle)
-      : settings_(std::move(settings)), handle_(std::move(handle)) {
-    new_task_queue = [this] { return new httplib::ThreadPool(static_cast<size_t>(settings_.threads)); };
-    set_payload_max_length(settings_.guard.body_bytes + 1);
+  Implementation(const Config& config, bool loopback_names_only, std::function<Answer(Incoming)> handle)
+      : limits_{.body_bytes = config.body_bytes, .loopback_names_only = loopback_names_only},
+        request_limit_(config.request_limit),
+        handle_(std::move(handle)) {
+    new_task_queue = [threads = config.http_threads] { return new httplib::ThreadPool(static_cast<size_t>(threads)); };
+    set_payload_max_length(limits_.body_bytes + 1);
     set_socket_options([this](socket_t fd) {
       const int yes = 1;
       ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -182,18 +170,17 @@ class Server::Implementation : public httplib::Server {
     ::fcntl(fd, F_SETFD, FD_CLOEXEC);
     const int yes = 1;
     ::setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-    Connection connection(fd, settings_.guard, settings_.timing, [this] { return stopping_.load(); });
-    for (bool more = true; more && !stopping_;) {
-      const auto next = connection.next();
-      if (std::holds_alternative<Closed>(next)) return true;
-      if (const auto* bad = std::get_if<BadRequest>(&next)) {
-        log_info("refused", {{"status", bad->status}, {"why", bad->why}});
-        connection.write(raw_problem(*bad));
-        break;
+    Connection connection(fd, limits_, request_limit_, [this] { return stopping_.load(); });
+    try {
+      for (bool more = true; more && !stopping_;) {
+        const std::optional<WholeRequest> request = connection.next();
+        if (!request) return true;
+        RequestStream stream(connection, *request);
+        more = serve_one(*this, stream, !request->head.keep_alive || stopping_) && request->head.keep_alive;
       }
-      const auto& request = std::get<WholeRequest>(next);
-      RequestStream stream(connection, request);
-      more = serve_one(*this, stream, !request.head.keep_alive || stopping_) && request.head.keep_alive;
+    } catch (const BadRequest& bad) {
+      log_info("refused", {{"status", bad.status}, {"why", bad.why}});
+      connection.write(raw_problem(bad));
     }
     connection.finish();
     return true;
@@ -209,14 +196,15 @@ class Server::Implementation : public httplib::Server {
       return self.process_request(stream, std::string(), 0, std::string(), 0, last, closed, nullptr) && !closed;
   }
 
-  ServerSettings settings_;
-  std::function<Answer(const Incoming&)> handle_;
+  GuardLimits limits_;
+  std::chrono::milliseconds request_limit_;
+  std::function<Answer(Incoming)> handle_;
   socket_t listening_ = INVALID_SOCKET;
   std::atomic<bool> stopping_{false}, ended_{false};
 };
 
-Server::Server(ServerSettings settings, std::function<Answer(const Incoming&)> handle)
-    : implementation_(std::make_unique<Implementation>(std::move(settings), std::move(handle))) {}
+Server::Server(const Config& config, bool loopback_names_only, std::function<Answer(Incoming)> handle)
+    : implementation_(std::make_unique<Implementation>(config, loopback_names_only, std::move(handle))) {}
 Server::~Server() = default;
 int Server::bind(const std::string& address, int port) { return implementation_->open(address, port); }
 void Server::serve() { implementation_->run(); }

@@ -7,19 +7,15 @@
 
 #include "http/connection.hpp"
 #include "http/message.hpp"
+#include "jobs/config.hpp"
 
 namespace talus::service {
 
-struct ServerSettings {
-  GuardLimits guard;
-  Timing timing;
-  int threads = 256;
-};
-
 class Server {
  public:
+  /// @param loopback_names_only  see GuardLimits
   /// @param handle  called for every valid request, concurrently from many threads; must not throw
-  Server(ServerSettings settings, std::function<Answer(const Incoming&)> handle);
+  Server(const Config& config, bool loopback_names_only, std::function<Answer(Incoming)> handle);
   ~Server();
 
   /// @param port  0: any free one

@@ -1,10 +1,10 @@
 #pragma once
-// Shared state of the handlers (thread-safe), and the groups of routes.
+// Shared state of the handlers (thread-safe), and the routes.
 
 #include <atomic>
 #include <functional>
 
-#include "http/router.hpp"
+#include "http/message.hpp"
 #include "http/tokens.hpp"
 #include "jobs/jobs.hpp"
 
@@ -14,22 +14,57 @@ struct Service {
   const Config& config;
   Store& store;
   Jobs& jobs;
-  const Scheduler& scheduler;
-  Changes& changes;
+  Scheduler& scheduler;
   std::function<bool()> stopping;
-  std::atomic<int> streams{0};
+  std::atomic<int> streams{0};                         ///< waiting requests, see WaitingRequest
   std::atomic<std::int64_t> requests{0}, failures{0};  ///< all answered requests; those with 5xx
 };
 
-void add_discovery_routes(Router& router);                      ///< /, /conformance, /api, /processes
-void add_execution_routes(Router& router, Service& service);    ///< /processes/{}/execution
-void add_job_routes(Router& router, Service& service);          ///< /jobs, /jobs/{}, /jobs/{}/results
-void add_realization_routes(Router& router, Service& service);  ///< histogram, realizations, retry, extend
-void add_event_routes(Router& router, Service& service);        ///< /jobs/{}/events
-void add_operation_routes(Router& router, Service& service);    ///< /healthz, /readyz, /metrics
-void add_umbridge_routes(Router& router, Service& service);     ///< /Info, /Evaluate, ...
+/// Counts a request that waits while this object exists.
+class WaitingRequest {
+ public:
+  /// @throws Refusal unavailable, with advice, where --max-streams of them wait already
+  WaitingRequest(Service& service, const std::string& advice);
+  ~WaitingRequest() { --service_.streams; }
+  WaitingRequest(const WaitingRequest&) = delete;
+  WaitingRequest& operator=(const WaitingRequest&) = delete;
+
+ private:
+  Service& service_;
+};
+
+using Handler = Answer (*)(Exchange&);
+
+struct Route {
+  const char* method;
+  const char* pattern;  ///< "/jobs/{}/results": {} stands for one segment
+  Role role;            ///< minimum role of the token
+  Handler handler;
+};
+
+using Routes = std::vector<Route>;
+
+/// What a request asks for.
+struct FoundRoute {
+  const Route* route = nullptr;  ///< null: no such path or, with `allow`, not this method
+  std::vector<std::string> captured = {};
+  std::string allow = {};  ///< methods allowed on the path; empty: no such path
+};
+/// HEAD is answered by the handler of GET. Path "*" is the server: it allows what any path does, and has no handler.
+FoundRoute find_route(const Routes& routes, const std::string& method, const std::string& path);
+
+Routes discovery_routes();    ///< /, /conformance, /api, /processes
+Routes job_routes();          ///< /processes/{}/execution, /jobs, /jobs/{}, /jobs/{}/results
+Routes realization_routes();  ///< histogram, realizations, retry, extend
+Routes event_routes();        ///< /jobs/{}/events
+Routes operation_routes();    ///< /healthz, /readyz, /metrics
+Routes umbridge_routes();     ///< /Info, /Evaluate, ...
+
+// Documents compiled into the program.
+const std::string& openapi_text();                                        ///< schemas/openapi.json
+const std::vector<std::pair<std::string, std::string>>& process_texts();  ///< schemas/processes/*.json: name, text
 
 /// All stages of a request: token, route, handler, problem, ETag, log line.
-Answer answer(const Incoming& request, const Router& router, Service& service, const Tokens& tokens);
+Answer answer(Incoming request, const Routes& routes, Service& service, const Tokens& tokens);
 
 }  // namespace talus::service

@@ -6,16 +6,13 @@
 #include <stdexcept>
 
 #include "base/digest.hpp"
+#include "http/text.hpp"
 #include "support/files.hpp"
 
 namespace talus::service {
 namespace {
 
-bool is_subject(const std::string& text) {
-  return !text.empty() && text.size() <= 64 &&
-         text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._@-") ==
-             std::string::npos;
-}
+bool is_subject(const std::string& text) { return is_identifier(text, "._@-"); }
 
 std::optional<Role> role_of(const std::string& word) {
   if (word == "submit") return Role::submit;
@@ -40,7 +37,7 @@ Tokens::Tokens(const std::filesystem::path& file) : wanted_(true) {
     if (!role_of(role) || !is_subject(subject) || !hex || !rest.empty())
       throw std::runtime_error(file.string() + ":" + std::to_string(number) +
                                ": not \"submit|read SUBJECT SHA256\"; talusd --new-token prints such a line");
-    entries_.push_back({{subject, *role_of(role)}, hash});
+    entries_.emplace_back(hash, Bearer{subject, *role_of(role)});
   }
   if (entries_.empty()) throw std::runtime_error(file.string() + " contains no token");
 }
@@ -52,8 +49,8 @@ std::optional<Bearer> Tokens::find(const std::string& authorization) const {
   if (begin == std::string::npos) return std::nullopt;
   const std::string hash = sha256(std::string_view(authorization).substr(begin));
   std::optional<Bearer> found;
-  for (const Entry& entry : entries_)  // all of them, so that the time does not tell which
-    if (equal_in_constant_time(entry.hash, hash)) found = entry.bearer;
+  for (const auto& [known, bearer] : entries_)  // all of them, so that the time does not depend on which one matches
+    if (equal_in_constant_time(known, hash)) found = bearer;
   return found;
 }
 

@@ -29,12 +29,8 @@ class Tokens {
   std::optional<Bearer> find(const std::string& authorization) const;
 
  private:
-  struct Entry {
-    Bearer bearer;
-    std::string hash;
-  };
   bool wanted_ = false;
-  std::vector<Entry> entries_;
+  std::vector<std::pair<std::string, Bearer>> entries_;  ///< SHA-256 of the token, in hex
 };
 
 /// A new token and the line for the file.

@@ -2,12 +2,10 @@
 // quantification. A model is a case in --models; its input is the coefficients of its random field [xi_1..xi_M] and, if
 // config.parameters names some, a second vector of their values; its output is the five measures of the front.
 //
-// The protocol wants, in this order: is the model known, is the feature there, are the inputs right; errors are
+// The protocol prescribes the order of the checks: model, feature, inputs. Errors are
 // {"error": {"type", "message"}} with status 400.
 
 #include <algorithm>
-#include <map>
-#include <mutex>
 
 #include "http/service.hpp"
 #include "support/files.hpp"
@@ -76,36 +74,17 @@ std::vector<const Parameter*> wanted(const Json& body) {
   return all;
 }
 
-/// How many coefficients a case takes; asked of talus once for each text.
-class Terms {
- public:
-  std::size_t of(const Json& document, Jobs& jobs) {
-    if (!document.contains("random_field") || document.at("random_field").is_null()) return 0;
-    const std::string key = dump(document);
-    {
-      const std::lock_guard lock(mutex_);
-      if (const auto at = known_.find(key); at != known_.end()) return at->second;
-    }
-    const Json demand = jobs.validate(document, "");
-    const std::size_t terms = demand.contains("field") ? demand.at("field").at("terms").get<std::size_t>() : 0;
-    const std::lock_guard lock(mutex_);
-    if (known_.size() > 100) known_.clear();
-    return known_[key] = terms;
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<std::string, std::size_t> known_;
-};
-
-std::vector<std::size_t> sizes(const Json& body, const Json& document, Service& service, Terms& terms) {
-  std::vector<std::size_t> all = {terms.of(document, service.jobs)};
-  if (const auto names = wanted(body); !names.empty()) all.push_back(names.size());
+/// The sizes of the input vectors.
+Json sizes(const Json& body, const Json& document, Jobs& jobs) {
+  Json all = {jobs.field_terms(document)};
+  if (const std::size_t named = wanted(body).size(); named > 0) all.push_back(named);
   return all;
 }
 
-Json evaluate(const Json& body, Json document, Service& service, Terms& terms) {
-  const std::vector<std::size_t> expected = sizes(body, document, service, terms);
+Json evaluate(const Exchange& exchange, const Json& body, const Json& model) {
+  Jobs& jobs = exchange.service.jobs;
+  Json document = model;
+  const auto expected = sizes(body, document, jobs).get<std::vector<std::size_t>>();
   if (!body.contains("input") || !body.at("input").is_array()) invalid("input must be an array of arrays of numbers");
   const Json& input = body.at("input");
   if (input.size() != expected.size())
@@ -121,7 +100,7 @@ Json evaluate(const Json& body, Json document, Service& service, Terms& terms) {
   const std::vector<const Parameter*> names = wanted(body);
   for (std::size_t i = 0; i < names.size(); ++i) document[Json::json_pointer(names[i]->pointer)] = input[1][i];
   document.erase("study");
-  const Json result = service.jobs.evaluate(document);
+  const Json result = jobs.evaluate(document);
   Json front = Json::array();
   for (const Measure& measure : measure_table) front.push_back(result.at(measure.key));
   return {{"output", Json::array({front})}};
@@ -131,49 +110,48 @@ Answer error_answer(const ProtocolError& e) {
   return json_answer({{"error", {{"type", e.type}, {"message", e.message}}}}, 400);
 }
 
-Answer guarded(const std::function<Json()>& action) try {
-  return json_answer(action());
+using Feature = Json (*)(const Exchange& exchange, const Json& body, const Json& document);
+
+/// The answer of a feature to a request, with errors as the protocol words them.
+template <Feature feature>
+Answer answer_of(Exchange& exchange) try {
+  const Json body = parse_body(exchange.request.body);
+  return json_answer(feature(exchange, body, model_of(body, exchange.service.config)));
 } catch (const ProtocolError& e) {
   return error_answer(e);
 } catch (const Refusal& e) {
-  if (e.reason != Reason::bad_request && e.reason != Reason::quota) throw;
+  if (e.reason != reason::bad_request && e.reason != reason::quota) throw;
   std::string message = e.what();
   for (const Fault& fault : e.faults)
     if (fault.message != e.what()) message += "; " + fault.pointer + " " + fault.message;
   return error_answer({"InvalidInput", message});
 }
 
+Json model_info(const Exchange&, const Json&, const Json&) {
+  return {{"support", {{"Evaluate", true}, {"Gradient", false}, {"ApplyJacobian", false}, {"ApplyHessian", false}}}};
+}
+Json input_sizes(const Exchange& exchange, const Json& body, const Json& document) {
+  return {{"inputSizes", sizes(body, document, exchange.service.jobs)}};
+}
+Json output_sizes(const Exchange&, const Json&, const Json&) { return {{"outputSizes", {measure_table.size()}}}; }
+Json unsupported(const Exchange& exchange, const Json&, const Json&) {
+  throw ProtocolError{"UnsupportedFeature", exchange.request.path.substr(1) + " is not supported by this model"};
+}
+
 }  // namespace
 
-void add_umbridge_routes(Router& router, Service& service) {
-  const auto terms = std::make_shared<Terms>();
-  router.add("GET", "/Info", Role::read, [&service](Exchange&) {
-    return json_answer({{"protocolVersion", 1.0}, {"models", models(service.config)}});
-  });
-  using Feature = std::function<Json(const Json& body, const Json& document)>;
-  const auto post = [&](const char* path, Role role, Feature feature) {
-    router.add("POST", path, role, [&service, feature](Exchange& exchange) {
-      return guarded([&] {
-        const Json body = parse_body(exchange.request.body);
-        return feature(body, model_of(body, service.config));
-      });
-    });
-  };
-  post("/ModelInfo", Role::read, [](const Json&, const Json&) -> Json {
-    return {{"support", {{"Evaluate", true}, {"Gradient", false}, {"ApplyJacobian", false}, {"ApplyHessian", false}}}};
-  });
-  post("/InputSizes", Role::read, [&service, terms](const Json& body, const Json& document) -> Json {
-    return {{"inputSizes", sizes(body, document, service, *terms)}};
-  });
-  post("/OutputSizes", Role::read, [](const Json&, const Json&) -> Json {
-    return {{"outputSizes", {measure_table.size()}}};
-  });
-  post("/Evaluate", Role::submit,
-       [&service, terms](const Json& body, const Json& document) { return evaluate(body, document, service, *terms); });
-  for (const char* path : {"/Gradient", "/ApplyJacobian", "/ApplyHessian"})
-    post(path, Role::read, [path](const Json&, const Json&) -> Json {
-      throw ProtocolError{"UnsupportedFeature", std::string(path + 1) + " is not supported by this model"};
-    });
+Routes umbridge_routes() {
+  return {{"GET", "/Info", Role::read,
+           [](Exchange& e) {
+             return json_answer({{"protocolVersion", 1.0}, {"models", models(e.service.config)}});
+           }},
+          {"POST", "/ModelInfo", Role::read, answer_of<model_info>},
+          {"POST", "/InputSizes", Role::read, answer_of<input_sizes>},
+          {"POST", "/OutputSizes", Role::read, answer_of<output_sizes>},
+          {"POST", "/Evaluate", Role::submit, answer_of<evaluate>},
+          {"POST", "/Gradient", Role::read, answer_of<unsupported>},
+          {"POST", "/ApplyJacobian", Role::read, answer_of<unsupported>},
+          {"POST", "/ApplyHessian", Role::read, answer_of<unsupported>}};
 }
 
 }  // namespace talus::service

@@ -1,9 +1,8 @@
 #pragma once
-// Every command line that talusd starts. They are built from our own paths and from numbers, never from text of a
-// request.
+// How talusd starts `talus`: program, environment and limits. Arguments are internal paths and numbers, never text of a
+// request. All functions are thread-safe.
 
-#include <filesystem>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "executor/process.hpp"
@@ -13,31 +12,15 @@
 namespace talus::service {
 
 using executor::Command;
-using executor::Limits;
 
-class Commands {
- public:
-  explicit Commands(const Config& config) : config_(config) {}
+/// A command that ends within seconds.
+Command short_command(const Config& config, std::vector<std::string> arguments);
 
-  Command validate(const std::filesystem::path& case_file) const;
-  /// Makes `study` the directory of a study, or a longer one.
-  Command prepare(const std::filesystem::path& case_file, const StudyPaths& study, std::int64_t realizations,
-                  std::int64_t seed) const;
-  /// @param particles  of the case: the memory limit follows from them
-  Command run(const StudyInfo& study, const RunKey& key, double particles) const;
-  /// The same realization into another directory, with its snapshots.
-  Command replay(const StudyPaths& study, const RunKey& run, std::int64_t seed, const std::filesystem::path& out) const;
-  /// A run without random numbers, for UM-Bridge.
-  Command median(const std::filesystem::path& case_file, const std::filesystem::path& out) const;
-  Command field(const StudyPaths& study, const RunKey& run, std::int64_t seed, const std::filesystem::path& out) const;
-  /// @param out  ends in .json or .svg
-  Command profile(const std::filesystem::path& run_directory, const std::filesystem::path& out) const;
+/// `talus run ARGUMENTS` outside the queue. Its size is not known, so of the limits of memory only --memory applies.
+Command single_run(const Config& config, std::vector<std::string> arguments);
 
- private:
-  Command quick(std::vector<std::string> arguments) const;
-  Command heavy(std::vector<std::string> arguments) const;
-  Limits run_limits(double particles) const;
-  const Config& config_;
-};
+/// A run of a study.
+/// @param particles  of the case: the memory limit follows from them
+Command study_run(const Config& config, const StudyInfo& study, const RunKey& key, double particles);
 
 }  // namespace talus::service

@@ -1,5 +1,5 @@
 #pragma once
-// What talusd is told when it starts.
+// The settings of talusd, and the layout of its data directory.
 
 #include <chrono>
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace talus::service {
 
-/// What a job may ask for; refused with the numbers when it asks for more.
+/// Limits of a job; a rejected request reports limit and value.
 struct Quotas {
   double particles = 2e6;  ///< soil and wall
   double steps = 1e7;      ///< of one realization
   std::int64_t realizations = 100'000;
-  double core_hours = 10'000;                         ///< estimated, of a whole job
+  double core_hours = 10'000;                         ///< estimated for the whole job
   std::int64_t open_jobs = 1000;                      ///< accepted and running, of all subjects
   std::int64_t open_jobs_of_one = 200;                ///< of one subject
   std::uint64_t disk_bytes = std::uint64_t{1} << 30;  ///< that must stay free
 };
 
 struct Config {
-  std::filesystem::path data;     ///< everything we keep
+  std::filesystem::path data;     ///< root of DataDirectory
   std::filesystem::path program;  ///< talus
   std::filesystem::path models;   ///< cases served over UM-Bridge; empty: none
   std::filesystem::path tokens;   ///< empty: no tokens, loopback only
@@ -38,15 +38,34 @@ struct Config {
   std::chrono::seconds lease{30};
   std::chrono::seconds time_limit{6 * 3600};  ///< of one run
   std::chrono::seconds grace{30};             ///< for workers to checkpoint when talusd is asked to stop
-  enum class MemoryLimit { by_size, fixed, none };
-  MemoryLimit memory_limit = MemoryLimit::by_size;  ///< of one run; none: sanitizers reserve terabytes of address space
-  std::uint64_t memory_bytes = 0;                   ///< of MemoryLimit::fixed
+  std::optional<std::uint64_t> memory_bytes;  ///< address space of one run; unset: from its size; 0: no limit
   std::uint64_t file_bytes = std::uint64_t{4} << 30;
   int http_threads = 256;
   std::size_t body_bytes = std::size_t{4} << 20;
   int streams = 64;                                 ///< event streams and long polls at a time
   std::chrono::milliseconds request_limit{15'000};  ///< for a client to send its request
   Quotas quotas;
+};
+
+/// With less free disk space no run starts, and a failed write is attributed to the full disk.
+inline constexpr std::uint64_t least_disk_bytes = std::uint64_t{16} << 20;
+
+/// DATA, the data directory.
+struct DataDirectory {
+  std::filesystem::path root;
+
+  std::filesystem::path database() const { return root / "queue.sqlite"; }
+  std::filesystem::path lock() const { return root / "talusd.lock"; }
+  std::filesystem::path workers_lock() const { return root / "workers.lock"; }
+  std::filesystem::path jobs() const { return root / "jobs"; }
+  std::filesystem::path scratch() const { return root / "scratch"; }  ///< emptied at start
+  std::filesystem::path slurm() const { return root / "slurm"; }
+  std::filesystem::path orphans() const { return root / "orphans"; }  ///< directories that the queue did not know
+  /// The directory of one job: that of a `talus study`, so that every subcommand of talus reads it.
+  std::filesystem::path job(const std::string& id) const { return jobs() / id; }
+  /// The directory of a job until its submission is complete; removed at start.
+  std::filesystem::path unfinished(const std::string& id) const { return jobs() / (unfinished_prefix + id); }
+  static constexpr const char* unfinished_prefix = "new-";
 };
 
 }  // namespace talus::service

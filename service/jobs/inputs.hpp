@@ -1,8 +1,6 @@
 #pragma once
-// What a client may ask of a process, checked and with every fault told at once.
+// The inputs and outputs of a request for a process, checked; every fault is reported at once.
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,25 +9,31 @@
 
 namespace talus::service {
 
+/// A request to carry out a process.
+struct Submission {
+  std::string subject;  ///< who owns the job
+  Json inputs = Json::object();
+  std::vector<std::string> outputs = {};  ///< their names
+  bool raw = false;                       ///< the client wants the bare values, without a document around them
+};
+
 /// The inputs of `influence-zone`.
 struct StudyInputs {
   Json document;  ///< the case, with the options put into its /study
-  std::int64_t realizations = 0;
-  std::optional<std::int64_t> seed;
-  std::string quantity = "influence_zone_m";
-  std::string title;
+  std::string quantity = measure_table[0].key;
 };
 
 /// @throws Refusal bad_request
 StudyInputs read_study_inputs(const Json& inputs);
 
-/// Any input may come bare, or as {"value": ...}; a link is refused: nothing is fetched.
-/// @return the bare value
-Json unqualified(const Json& input, const std::string& pointer, Checker& check);
+/// The inputs of `echo` as bare values. @throws Refusal bad_request
+Json read_echo_inputs(const Json& inputs);
 
-/// Everything that is wrong with the outputs asked for ("outputs": {"name": {...}}). @return their names; all where
-/// none are asked for
-std::vector<std::string> read_outputs(const Json& request, const std::vector<std::string>& known, Checker& check);
+/// The values of the named outputs of `echo`.
+Json echo_results(const Json& inputs, const std::vector<std::string>& outputs);
+
+/// The outputs that a request names ("outputs": {"name": {...}}), or all.
+std::vector<std::string> read_outputs(const Json& request, const std::vector<std::string>& known, Faults& faults);
 
 /// The measure of this name. @throws Refusal bad_request naming `pointer`
 const Measure& quantity_of(const std::string& name, const std::string& pointer);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/digest.hpp"
-#include "base/log.hpp"
+#include "support/csv.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
 #include "support/text.hpp"
@@ -13,40 +13,15 @@ namespace talus::service {
 namespace {
 
 namespace fs = std::filesystem;
+using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr double evaluations_per_second = 15e6;  ///< of a core, see README
+constexpr milliseconds histogram_age{1000};      ///< at most, while the job runs
+constexpr std::size_t profiles_kept = 16;        ///< of a job
+constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
-constexpr std::uint64_t crowded_bytes = std::uint64_t{16} << 20;  ///< with less, a failed write is put down to the disk
-
-/// A directory that is gone unless it is kept.
-class NewDirectory {
- public:
-  explicit NewDirectory(fs::path path) : path_(std::move(path)) {
-    std::error_code error;
-    fs::create_directories(path_, error);
-    if (error) throw_io_error("create", path_, error.value());
-  }
-  ~NewDirectory() {
-    std::error_code ignored;
-    if (!kept_) fs::remove_all(path_, ignored);
-  }
-  NewDirectory(const NewDirectory&) = delete;
-  NewDirectory& operator=(const NewDirectory&) = delete;
-  /// Moves it to its final place; still gone unless it is kept.
-  void move_to(const fs::path& place) {
-    rename_durably(path_, place);
-    path_ = place;
-  }
-  void keep() { kept_ = true; }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-  bool kept_ = false;
-};
-
-/// Which of its means `talus` says it could not use.
+/// Which program or file `talus` could not use, from its error output.
 const char* unusable(const std::string& said) {
   const auto has = [&said](const char* words) { return said.find(words) != std::string::npos; };
   if (has("gnuplot not found")) return "gnuplot, which draws the pictures, is missing here";
@@ -55,7 +30,7 @@ const char* unusable(const std::string& said) {
   return "a file of the service cannot be read or written";
 }
 
-/// As people write it: 51, not 51.0.
+/// A count without a decimal point: 51, not 51.0.
 std::string text(double value) {
   std::string digits = Json(value).dump();
   if (digits.ends_with(".0")) digits.resize(digits.size() - 2);
@@ -66,98 +41,140 @@ double core_hours(double particles, double steps, double runs) {
   return 2.0 * particles * steps * runs / evaluations_per_second / 3600.0;
 }
 
-}  // namespace
-
-Jobs::Jobs(const Config& config, Store& store, Scheduler& scheduler, Changes& changes)
-    : config_(config),
-      data_{config.data},
-      store_(store),
-      scheduler_(scheduler),
-      changes_(changes),
-      commands_(config),
-      heavy_(config.workers) {}
-
-CommandOutput Jobs::run(const Command& command, std::chrono::milliseconds limit, bool heavy) {
-  const auto patience = heavy ? seconds(60) : seconds(20);
-  if (!(heavy ? heavy_.try_acquire_for(patience) : quick_.try_acquire_for(patience))) {
-    Refusal busy(Reason::unavailable, "too many requests of this kind at once");
-    busy.retry_after = 10;
-    throw busy;
-  }
-  struct Releaser {
-    Jobs& jobs;
-    bool heavy;
-    ~Releaser() { heavy ? jobs.heavy_.release() : jobs.quick_.release(); }
-  } const releaser{*this, heavy};
-  CommandOutput outcome = run_to_end(command, data_.scratch(), limit, [this] { return stopping_.load(); });
-  if (stopping_) throw Refusal(Reason::unavailable, "talusd is stopping");
-  if (outcome.timed_out)
-    throw Refusal(Reason::timeout, "this takes longer than " + std::to_string(limit.count() / 1000) + " s");
-  // Its own word for "cannot read or write", or an answer cut short.
-  constexpr int io_exit = 5;
-  const bool cut_short = outcome.out.empty() ? false : outcome.out.back() != '\n';
-  if (!outcome.end.signal && (outcome.end.exit_code == io_exit || cut_short)) {
-    log_error("talus_cannot_write", {{"said", outcome.err}});
-    if (disk_left(config_.data) < crowded_bytes)
-      throw Refusal(Reason::disk_full, "no file can be written for want of room");
-    throw Refusal(Reason::unavailable, unusable(outcome.err));
-  }
-  return outcome;
+double particles_of(const Json& demand) {
+  const Json& particles = demand.at("particles");
+  return particles.at("soil").get<double>() + particles.at("wall").get<double>();
 }
 
-void Jobs::refuse_case(const CommandOutput& outcome, const std::string& pointer) const {
+/// A case that `talus` rejects or cannot process.
+[[noreturn]] void refuse_case(const CommandOutput& output, const std::string& pointer) {
   std::vector<Fault> faults;
-  const Json said = Json::parse(outcome.out, nullptr, false);
+  const Json said = Json::parse(output.out, nullptr, false);
   if (said.is_object() && said.contains("faults"))
     for (const Json& fault : said.at("faults"))
       faults.push_back({pointer + fault.at("pointer").get<std::string>(), fault.at("message").get<std::string>()});
-  if (outcome.end.signal || (faults.empty() && outcome.end.exit_code != 3)) {
-    log_error("talus_broke",
-              {{"exit_code", outcome.end.exit_code}, {"signal", outcome.end.signal}, {"said", outcome.err}});
-    if (outcome.end.signal || outcome.err.find("bad_alloc") != std::string::npos)
-      throw Refusal(Reason::unprocessable, "the case takes more memory or time than it may to be looked at");
-    throw Refusal(Reason::internal, "the case could not be checked");
+  if (output.end.signal || (faults.empty() && output.end.exit_code != Exit::bad_case)) {
+    log_error("talus_failed",
+              {{"exit_code", output.end.exit_code}, {"signal", output.end.signal}, {"said", output.err}});
+    if (output.end.signal || output.err.find("bad_alloc") != std::string::npos)
+      throw Refusal(reason::unprocessable, "checking the case takes more memory or time than allowed");
+    throw Refusal(reason::internal, "the case could not be checked");
   }
-  if (faults.empty()) faults.push_back({pointer, outcome.err});
-  throw Refusal(Reason::bad_request, "the case cannot be run", std::move(faults));
+  if (faults.empty()) faults.push_back({pointer, output.err});
+  throw Refusal(reason::bad_request, "the case cannot be run", std::move(faults));
 }
 
+/// Removes all but the newest requested profiles; those that the study keeps itself stay.
+void prune(const fs::path& directory) {
+  std::vector<std::pair<fs::file_time_type, fs::path>> files;
+  for (const auto& entry : fs::directory_iterator(directory))
+    if (run_of_work_name(entry.path().stem().string())) files.emplace_back(entry.last_write_time(), entry.path());
+  std::sort(files.rbegin(), files.rend());
+  std::error_code ignored;
+  for (std::size_t i = profiles_kept; i < files.size(); ++i) fs::remove(files[i].second, ignored);
+}
+
+/// @throws Refusal internal unless the command succeeded
+void check(const CommandOutput& output, const std::string& what) {
+  if (output.ok()) return;
+  log_error("talus_failed", {{"exit_code", output.end.exit_code}, {"signal", output.end.signal}, {"said", output.err}});
+  throw Refusal(reason::internal, what + " could not be made");
+}
+
+/// Drops the members that are null or contain null: a statistic without a value.
+void drop_nulls(Json& object) {
+  const auto has_null = [](const Json& value) {
+    return value.is_null() || (value.is_array() && std::find(value.begin(), value.end(), Json()) != value.end());
+  };
+  for (auto at = object.begin(); at != object.end();) at = has_null(*at) ? object.erase(at) : std::next(at);
+}
+
+}  // namespace
+
+CommandOutput Jobs::run_command(std::vector<std::string> arguments, seconds limit) {
+  return run(short_command(config_, std::move(arguments)), limit, running_commands_, seconds(20));
+}
+
+CommandOutput Jobs::run_once(std::vector<std::string> arguments, seconds limit) {
+  return run(single_run(config_, std::move(arguments)), limit, running_runs_, seconds(60));
+}
+
+CommandOutput Jobs::prepare(const fs::path& case_file, const StudyPaths& directory, std::int64_t realizations,
+                            std::int64_t seed) {
+  return run_command({"study", case_file.string(), "--out", directory.root.string(), "--realizations",
+                      std::to_string(realizations), "--seed", std::to_string(seed), "--prepare"},
+                     seconds(60));
+}
+
+template <class Semaphore>
+CommandOutput Jobs::run(const Command& command, seconds limit, Semaphore& places, seconds patience) {
+  if (!places.try_acquire_for(patience))
+    throw Refusal(reason::unavailable, "too many requests of this kind at once", {}, 10);
+  struct Releaser {
+    Semaphore& places;
+    ~Releaser() { places.release(); }
+  } const releaser{places};
+  CommandOutput output = run_to_end(command, data_.scratch(), limit, [this] { return stopping_.load(); });
+  if (stopping_) throw Refusal(reason::unavailable, "talusd is stopping");
+  if (output.timed_out)
+    throw Refusal(reason::timeout, "this takes longer than " + std::to_string(limit.count()) + " s");
+  const bool cut_short = !output.out.empty() && output.out.back() != '\n';
+  if (!output.end.signal && (output.end.exit_code == Exit::io || cut_short)) {
+    log_error("talus_cannot_write", {{"said", output.err}});
+    if (disk_left(config_.data) < least_disk_bytes)
+      throw Refusal(reason::disk_full, "no file can be written: the disk is full");
+    throw Refusal(reason::unavailable, unusable(output.err));
+  }
+  return output;
+}
+
+TemporaryDirectory Jobs::scratch_directory() const { return TemporaryDirectory(data_.scratch() / random_hex(8)); }
+
 Json Jobs::validate(const Json& document, const std::string& pointer) {
-  const NewDirectory scratch(data_.scratch() / ("case-" + random_hex(8)));
-  write_file_atomically(scratch.path() / "case.json", dump(document));
-  const CommandOutput outcome = run(commands_.validate(scratch.path() / "case.json"), seconds(60));
-  if (outcome.end.signal || outcome.end.exit_code != 0) refuse_case(outcome, pointer);
-  Json demand = Json::parse(outcome.out, nullptr, false);
-  if (demand.is_discarded()) throw Refusal(Reason::unavailable, "the case could not be checked; try again");
+  const TemporaryDirectory scratch = scratch_directory();
+  write_file_atomically(scratch / "case.json", dump(document));
+  const CommandOutput output = run_command({"validate", scratch / "case.json", "--json"}, seconds(60));
+  if (!output.ok()) refuse_case(output, pointer);
+  Json demand = Json::parse(output.out, nullptr, false);
+  if (demand.is_discarded()) throw Refusal(reason::unavailable, "the case could not be checked; try again");
   return demand;
 }
 
+std::size_t Jobs::field_terms(const Json& document) {
+  if (!document.contains("random_field") || document.at("random_field").is_null()) return 0;
+  return field_terms_.get(dump(document), 0, {}, [&]() -> Json {
+    const Json demand = validate(document, "");
+    return demand.contains("field") ? demand.at("field").at("terms") : Json(0);
+  });
+}
+
 void Jobs::check_queue(const std::string& subject) const {
-  const auto refuse = [](std::int64_t open, std::int64_t most, const char* whose) {
-    Refusal full(Reason::queue_full, std::string(whose) + " " + std::to_string(open) +
-                                         " jobs are waiting or running; at most " + std::to_string(most) + " may");
-    full.retry_after = 60;
-    throw full;
+  const auto check = [](std::int64_t open, std::int64_t most, const char* whose) {
+    if (open >= most)
+      throw Refusal(reason::queue_full,
+                    std::string(whose) + " " + std::to_string(open) + " jobs are waiting or running; at most " +
+                        std::to_string(most) + " may",
+                    {}, 60);
   };
-  const std::int64_t all = store_.open_jobs({}), mine = store_.open_jobs(subject);
-  if (all >= config_.quotas.open_jobs) refuse(all, config_.quotas.open_jobs, "in all");
-  if (mine >= config_.quotas.open_jobs_of_one) refuse(mine, config_.quotas.open_jobs_of_one, "of yours");
+  check(store_.open_jobs({}), config_.quotas.open_jobs, "in all");
+  check(store_.open_jobs(subject), config_.quotas.open_jobs_of_one, "of yours");
   check_disk();
 }
 
 void Jobs::check_disk() const {
   const std::uint64_t left = disk_left(config_.data);
   if (left < config_.quotas.disk_bytes)
-    throw Refusal(Reason::disk_full, "only " + std::to_string(left >> 20) + " MiB of disk are left; " +
+    throw Refusal(reason::disk_full, "only " + std::to_string(left >> 20) + " MiB of disk are left; " +
                                          std::to_string(config_.quotas.disk_bytes >> 20) + " must stay free");
 }
 
-void Jobs::check_size(double particles, double steps, std::int64_t realizations, const std::string& only_at) const {
-  Checker check;
+void Jobs::check_size(double particles, double steps, std::int64_t realizations,
+                      const std::string& common_pointer) const {
+  Faults faults;
   const auto at_most = [&](const char* pointer, const char* what, double asked, double most) {
     if (asked > most)
-      check.fault(only_at.empty() ? pointer : only_at,
-                  std::string(what) + ": " + text(asked) + ", at most " + text(most));
+      faults.add(common_pointer.empty() ? pointer : common_pointer,
+                 std::string(what) + ": " + text(asked) + ", at most " + text(most));
   };
   const double hours = core_hours(particles, steps, static_cast<double>(realizations));
   at_most("/inputs/case/particle_spacing_m", "particles", particles, config_.quotas.particles);
@@ -165,92 +182,158 @@ void Jobs::check_size(double particles, double steps, std::int64_t realizations,
   at_most("/inputs/realizations", "realizations", static_cast<double>(realizations),
           static_cast<double>(config_.quotas.realizations));
   at_most("/inputs", "estimated core-hours", std::round(10.0 * hours) / 10.0, config_.quotas.core_hours);
-  check.finish(Reason::quota, "the job is larger than a job may be here");
+  refuse_if_any(faults, reason::quota, "the job exceeds a quota");
 }
 
-std::optional<Job> Jobs::submit_study(const std::string& subject, const Json& inputs,
-                                      const std::vector<std::string>& outputs, bool raw, const Store::Answer& answer) {
-  check_queue(subject);
-  const StudyInputs study = read_study_inputs(inputs);
+std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response) {
+  std::optional<Job> recorded = store_.create(job, response);
+  if (recorded) scheduler_.wake();
+  return recorded;
+}
+
+std::optional<Job> Jobs::submit_study(const Submission& submission, const Store::Response& response) {
+  check_queue(submission.subject);
+  const StudyInputs study = read_study_inputs(submission.inputs);
   const Json demand = validate(study.document, "/inputs/case");
 
-  NewJob job{.id = random_hex(16), .process = "influence-zone", .subject = subject};
-  NewDirectory made(data_.unfinished(job.id));
-  const StudyPaths directory{made.path()};
-  const fs::path scratch = data_.scratch() / (job.id + ".json");
-  write_file_atomically(scratch, dump(study.document));
+  NewJob job{.id = random_hex(16), .process = "influence-zone", .subject = submission.subject};
   const Json& options = study.document.at("study");
   job.planned = options.value("realizations", std::int64_t{100});
   job.seed =
       options.contains("seed") ? options.at("seed").get<std::int64_t>() : static_cast<std::int64_t>(random_seed());
-  job.particles = demand.at("particles").at("soil").get<double>() + demand.at("particles").at("wall").get<double>();
+  job.particles = particles_of(demand);
   job.steps = demand.at("steps").get<double>();
   check_size(job.particles, job.steps, job.planned);
-  const CommandOutput prepared = run(commands_.prepare(scratch, directory, job.planned, job.seed), seconds(60));
-  fs::remove(scratch);
-  if (prepared.end.signal || prepared.end.exit_code != 0) refuse_case(prepared, "/inputs/case");
+  const TemporaryDirectory scratch = scratch_directory();
+  write_file_atomically(scratch / "case.json", dump(study.document));
+  TemporaryDirectory made(data_.unfinished(job.id));
+  const StudyPaths directory{made.path()};
+  const CommandOutput prepared = prepare(scratch / "case.json", directory, job.planned, job.seed);
+  if (!prepared.ok()) refuse_case(prepared, "/inputs/case");
 
-  const Json plan = Json::parse(find_file(directory.plan(), 1 << 24).value_or("null"));
-  job.title = plan.at("title").get<std::string>();
-  job.planned = plan.at("realizations").get<std::int64_t>();
-  job.floor = plan.at("noise_floor_replicates").get<std::int64_t>();
-  job.max_failed_share = plan.at("max_failed_share").get<double>();
-  job.may_stop_early = !plan.at("stop_when_ci_half_width_below_m").is_null();
-  job.case_hash = plan.at("case_hash").get<std::string>();
-  job.inputs = dump({{"quantity", study.quantity}, {"outputs", outputs}, {"raw", raw}});
+  const Plan plan = find_plan(directory.root).value();
+  job.title = plan.title;
+  job.planned = plan.study.realizations;
+  job.replicates = plan.study.noise_floor_replicates;
+  job.max_failed_share = plan.study.max_failed_share;
+  job.may_stop_early = plan.study.stop_half_width.has_value();
+  job.case_hash = plan.case_hash;
+  job.inputs = dump({{"quantity", study.quantity}, {"outputs", submission.outputs}, {"raw", submission.raw}});
   made.move_to(data_.job(job.id));
-  std::optional<Job> row = store_.create(job, answer);
-  if (!row) return row;
-  made.keep();
-  scheduler_.wake();
-  changes_.announce();
-  return row;
+  std::optional<Job> recorded = record(job, response);
+  if (recorded) made.keep();
+  return recorded;
 }
 
-std::optional<Job> Jobs::submit_echo(const std::string& subject, const Json& inputs,
-                                     const std::vector<std::string>& outputs, bool raw, const Store::Answer& answer) {
-  check_queue(subject);
-  Json kept = {{"outputs", outputs}, {"raw", raw}, {"pause", inputs.value("pause", 0.0)}, {"inputs", inputs}};
-  std::optional<Job> row = store_.create(
-      {.id = random_hex(16), .process = "echo", .subject = subject, .title = "echo", .inputs = dump(kept)}, answer);
-  if (row) scheduler_.wake();
-  if (row) changes_.announce();
-  return row;
+std::optional<Job> Jobs::submit_echo(const Submission& submission, const Store::Response& response) {
+  check_queue(submission.subject);
+  const Json kept = {{"outputs", submission.outputs},
+                     {"raw", submission.raw},
+                     {"pause", submission.inputs.value("pause", 0.0)},
+                     {"inputs", submission.inputs}};
+  return record(
+      {.id = random_hex(16), .process = "echo", .subject = submission.subject, .title = "echo", .inputs = dump(kept)},
+      response);
 }
 
 void Jobs::dismiss(const Job& job) {
   store_.dismiss(job.number);
   scheduler_.wake(job.number);
-  changes_.announce();
 }
 
-std::int64_t Jobs::retry(const Job& job, const Store::Answer& answer) {
-  if (job.process != "influence-zone" || job.state == JobState::dismissed)
-    throw Refusal(Reason::conflict, "this job has no realizations");
+void Jobs::retry(const Job& job, const Store::Response& response) {
   if (ended(job.state)) check_queue(job.subject);  // it will be open again
-  const std::int64_t retried = store_.retry_failed(job.number, answer);
+  store_.retry_failed(job.number, response);
   scheduler_.wake(job.number);
-  changes_.announce();
-  return retried;
 }
 
-bool Jobs::extend(const Job& job, std::int64_t more, const Store::Answer& answer) {
-  if (job.process != "influence-zone" || job.state == JobState::dismissed)
-    throw Refusal(Reason::conflict, "this job has no realizations");
-  if (job.may_stop_early) throw Refusal(Reason::conflict, "a study that stops by itself cannot be extended");
+bool Jobs::extend(const Job& job, std::int64_t more, const Store::Response& response) {
+  if (job.may_stop_early) throw Refusal(reason::conflict, "a study that stops by itself cannot be extended");
   const std::lock_guard one_at_a_time(extending_);  // two at once would both add to the same number
-  const std::int64_t planned = store_.job(job.id)->planned + more;
+  const std::int64_t planned = store_.job(job.number)->planned + more;
   ended(job.state) ? check_queue(job.subject) : check_disk();  // an ended one will be open again
   check_size(job.particles, job.steps, planned, "/realizations");
   const StudyPaths directory{data_.job(job.id)};
-  const CommandOutput prepared =
-      run(commands_.prepare(directory.resolved_case(), directory, planned, job.seed), seconds(60));
-  if (prepared.end.signal || prepared.end.exit_code != 0)
-    throw Refusal(Reason::conflict, prepared.err.empty() ? "the study cannot be extended" : prepared.err);
-  const bool fresh = store_.extend(job.number, planned, answer);
+  const CommandOutput prepared = prepare(directory.resolved_case(), directory, planned, job.seed);
+  if (!prepared.ok())
+    throw Refusal(reason::conflict, prepared.err.empty() ? "the study cannot be extended" : prepared.err);
+  const bool fresh = store_.extend(job.number, planned, response);
   scheduler_.wake(job.number);
-  changes_.announce();
   return fresh;
+}
+
+Json Jobs::evaluate(const Json& document) {
+  const Json demand = validate(document, "");
+  check_size(particles_of(demand), demand.at("steps").get<double>(), 1);
+  const TemporaryDirectory scratch = scratch_directory();
+  write_file_atomically(scratch / "case.json", dump(document));
+  const CommandOutput output =
+      run_once({scratch / "case.json", "--seed", "0", "--out", scratch / "run"}, config_.time_limit);
+  if (!output.end.signal && output.end.exit_code == Exit::bad_case) throw Refusal(reason::bad_request, output.err);
+  if (!output.ok()) throw Refusal(reason::internal, "the run failed: " + output.err);
+  return read_json((scratch / "run") / "result.json", 1 << 20);
+}
+
+Json Jobs::distribution(const Job& job, const Measure& quantity, const Bins& bins) {
+  const std::string key =
+      job.id + "/" + quantity.key + "/" + std::to_string(bins.count) + "/" + Json(bins.edges).dump();
+  return distributions_.get(key, job.version, ended(job.state) ? milliseconds(0) : histogram_age, [&] {
+    std::optional<Plan> plan = find_plan(data_.job(job.id));
+    if (!plan) throw Refusal(reason::internal, "the plan of the job is missing");
+    plan->study.realizations = job.planned;
+    Json answer =
+        talus::distribution(*plan, quantity, store_.measure_sample(job, quantity, plan->study.stop_half_width), bins);
+    drop_nulls(answer);
+    return answer;
+  });
+}
+
+Json Jobs::summary(const Job& job) const {
+  const auto text = find_file(StudyPaths{data_.job(job.id)}.summary(), max_bytes);
+  if (!text) throw Refusal(reason::result_not_ready, "there are no statistics of this job");
+  return Json::parse(*text);
+}
+
+std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
+  const TemporaryDirectory scratch = scratch_directory();
+  const fs::path file = scratch / (svg ? "field.svg" : "field.csv");
+  const CommandOutput output =
+      run_command({"field", StudyPaths{data_.job(job.id)}.resolved_case(), "--realization", std::to_string(index),
+                   "--seed", std::to_string(job.seed), "--out", file, "--json"},
+                  seconds(60));
+  check(output, "the field");
+  const std::string text = read_file(file, max_bytes);
+  if (svg) return text;
+  Json json = Json::parse(output.out);
+  CsvRows rows(text);
+  rows.next();  // the header: x_m, y_m, friction_angle_deg, tan_phi
+  for (const char* key : {"x_m", "y_m", "particle_friction_angle_deg"}) json[key] = Json::array();
+  while (rows.next()) {
+    const std::vector<std::string> fields = rows.fields();
+    json["x_m"].push_back(to_number(fields.at(0)).value());
+    json["y_m"].push_back(to_number(fields.at(1)).value());
+    json["particle_friction_angle_deg"].push_back(to_number(fields.at(2)).value());
+  }
+  return dump(json);
+}
+
+std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
+  const StudyPaths study{data_.job(job.id)};
+  fs::create_directories(study.profiles());
+  const std::string extension = svg ? ".svg" : ".json";
+  const fs::path kept = study.profiles() / (std::to_string(index) + extension);
+  if (auto text = find_file(kept, max_bytes)) return *text;
+  const TemporaryDirectory scratch = scratch_directory();
+  const fs::path out = scratch / "run", file = scratch / ("profile" + extension);
+  check(run_once({study.resolved_case(), "--realization", std::to_string(index), "--seed", std::to_string(job.seed),
+                  "--out", out},
+                 seconds(3600)),
+        "the profile");
+  check(run_command({"profile", out, "--out", file}, seconds(60)), "the profile");
+  const std::string text = read_file(file, max_bytes);
+  write_file_atomically(kept, text);
+  prune(study.profiles());
+  return text;
 }
 
 }  // namespace talus::service

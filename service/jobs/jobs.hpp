@@ -1,74 +1,82 @@
 #pragma once
-// What can be done with jobs; the HTTP side calls nothing else.
+// Operations on jobs, for the HTTP handlers.
 
 #include <atomic>
-#include <map>
 #include <mutex>
 #include <semaphore>
 
-#include "jobs/changes.hpp"
 #include "jobs/commands.hpp"
 #include "jobs/inputs.hpp"
-#include "jobs/latest_answers.hpp"
+#include "jobs/result_cache.hpp"
 #include "jobs/scheduler.hpp"
 #include "process/short_command.hpp"
 #include "queue/store.hpp"
 
 namespace talus::service {
 
+/// Thread-safe. Every function throws Refusal, StorageError or IoError.
 class Jobs {
  public:
-  Jobs(const Config& config, Store& store, Scheduler& scheduler, Changes& changes);
+  Jobs(const Config& config, Store& store, Scheduler& scheduler)
+      : config_(config), data_{config.data}, store_(store), scheduler_(scheduler), running_runs_(config.workers) {}
 
-  /// Checks a study with `talus validate`, refuses what is over the quotas, makes its directory and records it.
-  /// @param raw  whether the client wants its results as they are, without a document around them
-  /// @return nothing where `answer`'s Idempotency-Key has been used meanwhile
-  /// @throws Refusal, StorageError, IoError
-  std::optional<Job> submit_study(const std::string& subject, const Json& inputs,
-                                  const std::vector<std::string>& outputs, bool raw, const Store::Answer& answer);
-  std::optional<Job> submit_echo(const std::string& subject, const Json& inputs,
-                                 const std::vector<std::string>& outputs, bool raw, const Store::Answer& answer);
+  /// Checks a study with `talus validate` and against the quotas, makes its directory and records it.
+  /// @param response  stored under the Idempotency-Key of the request
+  /// @return the job; nothing where another request has used the key meanwhile
+  std::optional<Job> submit_study(const Submission& submission, const Store::Response& response);
+  std::optional<Job> submit_echo(const Submission& submission, const Store::Response& response);
   void dismiss(const Job& job);
-  std::int64_t retry(const Job& job, const Store::Answer& answer);
-  bool extend(const Job& job, std::int64_t more, const Store::Answer& answer);
+  void retry(const Job& job, const Store::Response& response);
+  /// @return false where another request has used the key meanwhile
+  bool extend(const Job& job, std::int64_t more, const Store::Response& response);
 
-  /// How a quantity is distributed over what is done so far, from the records in the database.
+  /// How a quantity is distributed over the runs done so far, from the records in the database.
   Json distribution(const Job& job, const Measure& quantity, const Bins& bins);
   /// study.json of a job that has ended.
   Json summary(const Job& job) const;
-  /// The friction angles before the slide; `svg` or JSON.
+  /// The friction angles before the failure of the slope, as SVG or JSON.
   std::string field(const Job& job, std::int64_t index, bool svg);
-  /// The particles at the end, from the snapshots of a run made again; kept, the latest few.
+  /// The particles at the end of a run, which is repeated for its snapshots. The 16 newest of a job are kept.
   std::string profile(const Job& job, std::int64_t index, bool svg);
-  /// Runs a case with given coefficients. @return result.json
+  /// Runs a case with given coefficients of its random field. @return result.json
   Json evaluate(const Json& document);
-  /// What `talus validate --json` says of a document.
-  /// @param pointer  put before the pointers of its faults
-  /// @throws Refusal bad_request with the faults
+  /// The output of `talus validate --json` for a document.
+  /// @param pointer  where the document stands in the request, for the faults
   Json validate(const Json& document, const std::string& pointer);
+  /// The number of coefficients of the random field of a case.
+  std::size_t field_terms(const Json& document);
 
-  /// Ends what runs outside the queue, for good.
+  /// Ends the commands under way and refuses new ones.
   void stop() { stopping_ = true; }
 
  private:
   void check_disk() const;
-  /// @param only_at  where every fault is; otherwise where the inputs of a submission say it
-  void check_size(double particles, double steps, std::int64_t realizations, const std::string& only_at = "") const;
+  /// @param pointer  of every fault; empty: that of the input concerned
+  void check_size(double particles, double steps, std::int64_t realizations, const std::string& pointer = "") const;
   void check_queue(const std::string& subject) const;
-  CommandOutput run(const Command& command, std::chrono::milliseconds limit, bool heavy = false);
-  [[noreturn]] void refuse_case(const CommandOutput& outcome, const std::string& pointer) const;
+  std::optional<Job> record(const NewJob& job, const Store::Response& response);
+  /// `talus ARGUMENTS`, for at most `limit`. @throws Refusal where it cannot start, takes longer, or cannot read or
+  /// write
+  CommandOutput run_command(std::vector<std::string> arguments, std::chrono::seconds limit);
+  /// `talus run ARGUMENTS` outside the queue.
+  CommandOutput run_once(std::vector<std::string> arguments, std::chrono::seconds limit);
+  template <class Semaphore>
+  CommandOutput run(const Command& command, std::chrono::seconds limit, Semaphore& places,
+                    std::chrono::seconds patience);
+  /// Makes `directory` that of a study, or extends the study in it.
+  CommandOutput prepare(const std::filesystem::path& case_file, const StudyPaths& directory, std::int64_t realizations,
+                        std::int64_t seed);
+  TemporaryDirectory scratch_directory() const;
 
   const Config& config_;
   DataDirectory data_;
   Store& store_;
   Scheduler& scheduler_;
-  Changes& changes_;
-  Commands commands_;
-  std::counting_semaphore<64> quick_{4};  ///< short commands at a time
-  std::counting_semaphore<1024> heavy_;   ///< runs outside the queue at a time
+  std::counting_semaphore<64> running_commands_{4};  ///< at a time
+  std::counting_semaphore<1024> running_runs_;       ///< runs outside the queue at a time
   std::atomic<bool> stopping_{false};
   std::mutex extending_;
-  LatestAnswers distributions_;
+  ResultCache distributions_, field_terms_;
 };
 
 }  // namespace talus::service

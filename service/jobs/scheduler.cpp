@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include "base/log.hpp"
+#include "base/json.hpp"
 #include "executor/slurm.hpp"
-#include "jobs/statistics.hpp"
 #include "study/estimator.hpp"
 #include "support/files.hpp"
 #include "support/text.hpp"
@@ -19,10 +18,9 @@ constexpr milliseconds poll_interval{10};
 constexpr milliseconds idle_interval{500};
 constexpr milliseconds trouble_interval{1000};
 constexpr milliseconds reasons_interval{2000};
-constexpr milliseconds removal_interval{5000};                   ///< until what could not be removed is tried again
-constexpr std::uint64_t crowded_bytes = std::uint64_t{8} << 20;  ///< a run that cannot write then is not to blame
+constexpr milliseconds removal_interval{5000};  ///< between attempts to remove a directory
 
-/// Could it be? What a network file system does not let go yet is tried again, and nothing else waits for it.
+/// Removes a directory. @return false where a network file system still holds it; a later attempt may succeed
 bool removed(const fs::path& directory) {
   std::error_code error;
   fs::remove_all(directory, error);
@@ -40,62 +38,34 @@ std::unique_ptr<executor::Executor> make_executor(const Config& config) {
 
 }  // namespace
 
-Scheduler::Scheduler(const Config& config, Store& store, Changes& changes)
-    : config_(config),
-      data_{config.data},
-      store_(store),
-      changes_(changes),
-      commands_(config),
-      engine_(store, make_executor(config), engine_options()) {}
-
-Scheduler::~Scheduler() { drain(); }
+Scheduler::Scheduler(const Config& config, Store& store)
+    : config_(config), data_{config.data}, store_(store), engine_(store, make_executor(config), engine_options()) {}
 
 EngineOptions Scheduler::engine_options() {
   return {.attempts = config_.attempts,
-          .command = [this](const StudyInfo& study,
-                            const RunKey& key) { return commands_.run(study, key, store_.job(study.name)->particles); },
+          .command =
+              [this](const StudyInfo& study, const RunKey& key) {
+                return study_run(config_, study, key, store_.job(study.name)->particles);
+              },
           .room_on_disk = [this] { return room_on_disk(); },
           .report = [this](const RunEvent& event) { count(event); }};
 }
 
 void Scheduler::count(const RunEvent& event) {
   using Kind = RunEvent::Kind;
-  const auto log = [&](const char* what) {
-    if (event.reason.empty()) return;
-    log_info(what, {{"job", event.study.name},
-                    {"run", event.claim.key.index},
-                    {"floor", event.claim.key.is_replicate()},
-                    {"attempt", event.claim.attempt},
-                    {"why", event.reason}});
-  };
-  switch (event.kind) {
-    case Kind::done:
-      done_.wall_clock_ms += static_cast<std::int64_t>(1000.0 * event.wall_clock);
-      [[fallthrough]];
-    case Kind::taken_over:
-      ++done_.done;
-      break;
-    case Kind::failed:
-      ++done_.failed;
-      log("run_failed");
-      break;
-    case Kind::crashed:
-      ++done_.crashed;
-      log("run_again");
-      break;
-    case Kind::given_back:
-      ++done_.given_back;
-      log("run_again");
-      break;
-    case Kind::stale:
-      ++done_.stale;
-      break;
-  }
-  changes_.announce();
+  ++counters_.ended[static_cast<std::size_t>(event.kind)];
+  if (event.kind == Kind::done) counters_.wall_clock_ms += static_cast<std::int64_t>(1000.0 * event.wall_clock);
+  if (!event.reason.empty())
+    log_info(event.kind == Kind::failed ? "run_failed" : "run_again", {{"job", event.study.name},
+                                                                       {"run", event.claim.key.index},
+                                                                       {"replicate", event.claim.key.is_replicate()},
+                                                                       {"attempt", event.claim.attempt},
+                                                                       {"why", event.reason}});
+  changes_.notify();
 }
 
 void Scheduler::start() {
-  put_orphans_aside();
+  move_orphans_aside();
   const std::int64_t requeued = store_.requeue_all();
   if (requeued > 0) log_info("requeued", {{"runs", requeued}, {"why", "an earlier talusd held them"}});
   thread_ = std::thread([this] { loop(); });
@@ -108,13 +78,14 @@ void Scheduler::wake(std::optional<std::int64_t> job) {
     if (job) changed_.insert(*job);
   }
   wake_.notify_one();
+  changes_.notify();
 }
 
-void Scheduler::wait_for(milliseconds most) {
+void Scheduler::wait_for(milliseconds limit) {
   std::set<StudyNumber> changed;
   {
     std::unique_lock lock(mutex_);
-    wake_.wait_for(lock, most, [&] { return woken_ || draining_; });
+    wake_.wait_for(lock, limit, [&] { return woken_ || draining_; });
     if (!woken_) return;
     woken_ = false;
     changed.swap(changed_);
@@ -129,13 +100,13 @@ void Scheduler::loop() {
   while (!draining_) {
     try {
       tick();
-      if (told_trouble_) log_info("going_on");
-      told_trouble_ = false;
+      if (in_trouble_) log_info("scheduler_continues");
+      in_trouble_ = false;
       wait_for(engine_.running() > 0 || echo_waiting_ ? poll_interval : idle_interval);
     } catch (const std::exception& e) {
-      // A full disk or a database that cannot be written: runs go on, and how they end is recorded once it can be.
-      if (!told_trouble_) log_error("scheduler_waits", {{"why", e.what()}});
-      told_trouble_ = true;
+      // A full disk or a database that cannot be written: runs continue, and how they end is recorded later.
+      if (!in_trouble_) log_error("scheduler_waits", {{"why", e.what()}});
+      in_trouble_ = true;
       read_queue_ = true;
       std::this_thread::sleep_for(trouble_interval);
     }
@@ -145,7 +116,7 @@ void Scheduler::loop() {
 
 void Scheduler::tick() {
   read_queue_ |= engine_.record_ended();
-  done_.running = static_cast<int>(engine_.running());
+  counters_.running = static_cast<int>(engine_.running());
   if (Steady::now() >= next_renewal_) {
     engine_.renew_claims();
     read_queue_ = true;
@@ -155,10 +126,10 @@ void Scheduler::tick() {
   if (removing_ && Steady::now() >= next_removal_) remove_dismissed();
   if (read_queue_) {
     engine_.start_runs();
-    done_.running = static_cast<int>(engine_.running());
+    counters_.running = static_cast<int>(engine_.running());
     finish_complete();
     read_queue_ = false;
-    changes_.announce();
+    changes_.notify();
   }
   if (Steady::now() < next_reasons_) return;
   next_reasons_ = Steady::now() + reasons_interval;
@@ -166,7 +137,7 @@ void Scheduler::tick() {
 }
 
 bool Scheduler::room_on_disk() const {
-  return disk_left(config_.data) >= std::max(config_.quotas.disk_bytes / 2, crowded_bytes);
+  return disk_left(config_.data) >= std::max(config_.quotas.disk_bytes / 2, least_disk_bytes);
 }
 
 /// The statistics of jobs whose runs have all ended.
@@ -180,7 +151,7 @@ void Scheduler::finish_complete() {
       store_.finish(job.number, JobState::failed, std::string("the statistics cannot be written: ") + e.what());
     }
     engine_.forget(job.number);
-    changes_.announce();
+    changes_.notify();
   }
 }
 
@@ -189,12 +160,13 @@ void Scheduler::finish(const Job& job) {
   std::optional<Plan> plan = find_plan(paths.root);
   if (!plan) throw IoError("there is no plan.json in " + paths.root.string());
   plan->study.realizations = job.planned;
-  const StudySummary summary = publish_study(store_, job, *plan, paths);
+  const StudySummary summary = publish(paths, *plan, store_.records(job.number, RunKind::realization),
+                                       store_.records(job.number, RunKind::replicate));
   const bool too_many = too_many_failed(summary.failed(), summary.done(), job.planned, job.max_failed_share);
   std::string message = std::to_string(summary.done()) + " realizations done";
   if (summary.failed() > 0) message += ", " + std::to_string(summary.failed()) + " failed";
   if (too_many) message += ": more than max_failed_share = " + to_text(job.max_failed_share) + " of those planned";
-  if (summary.stopped_early()) message += "; stopped early, the mean is known well enough";
+  if (summary.stopped_early()) message += "; stopped early: the mean has the requested precision";
   if (!store_.finish(job.number, too_many ? JobState::failed : JobState::successful, message)) return;
   log_info("job_ended", {{"job", job.id},
                          {"state", too_many ? "failed" : "successful"},
@@ -204,27 +176,27 @@ void Scheduler::finish(const Job& job) {
   fs::remove_all(paths.work(), ignored);
 }
 
-/// Jobs of which the executor runs nothing say why.
+/// Records why the executor runs nothing of a job.
 void Scheduler::note_pending_reasons() {
   const std::set<StudyNumber> running = engine_.studies_running();
   std::set<StudyNumber> concerned = running;
-  concerned.merge(std::exchange(pending_, {}));  // those that said so and have nothing at work any more
+  concerned.merge(std::exchange(pending_, {}));  // also those with a reason that may not hold any more
   for (const StudyNumber number : concerned) {
     const std::optional<Job> job = store_.job(number);
     if (!job || ended(job->state)) continue;
     const std::string why = running.contains(number) ? engine_.executor().pending_reason(job->id) : "";
     if (!why.empty()) pending_.insert(number);
     if (job->message == why) continue;
-    store_.note_waits(job->number, why);
+    store_.note_pending_reason(job->number, why);
     if (!why.empty()) log_info("waits", {{"job", job->id}, {"why", why}});
-    changes_.announce();
+    changes_.notify();
   }
 }
 
-/// Echo does nothing but wait.
+/// Starts and ends echo jobs, which only wait.
 void Scheduler::run_echo() {
   if (!echo_waiting_ && !read_queue_) return;
-  const std::vector<Job> waiting = store_.waiting_jobs("echo");
+  const std::vector<Job> waiting = store_.open_jobs_without_runs("echo");
   echo_waiting_ = !waiting.empty();
   for (const Job& job : waiting) {
     const double pause = Json::parse(job.inputs).value("pause", 0.0);
@@ -235,15 +207,14 @@ void Scheduler::run_echo() {
     } else {
       continue;
     }
-    changes_.announce();
+    changes_.notify();
   }
 }
 
-/// Removes the directories of dismissed jobs, each once none of its processes runs. A directory of any other job, and
-/// one that the queue does not know, stays.
+/// Removes the directories of dismissed jobs, each once none of its processes runs. No other directory is removed.
 void Scheduler::remove_dismissed() {
   removing_ = false;
-  const std::set<std::string> dismissed = store_.dismissed_ids();
+  const std::set<std::string> dismissed = store_.job_ids(JobState::dismissed);
   std::set<std::string> at_work;
   for (const StudyNumber number : engine_.studies_running()) at_work.insert(store_.job(number)->id);
   for (const auto& entry : fs::directory_iterator(data_.jobs())) {
@@ -260,9 +231,8 @@ void Scheduler::remove_dismissed() {
 
 /// At start: moves directories that the queue does not know to DATA/orphans. They may be the results of a queue that
 /// was lost or restored from an older backup. Only unfinished submissions and scratch files are deleted.
-void Scheduler::put_orphans_aside() {
-  std::set<std::string> known = store_.known_ids();
-  known.merge(store_.dismissed_ids());
+void Scheduler::move_orphans_aside() {
+  const std::set<std::string> known = store_.job_ids();
   for (const auto& entry : fs::directory_iterator(data_.jobs())) {
     const std::string name = entry.path().filename().string();
     if (known.contains(name)) continue;
@@ -270,14 +240,14 @@ void Scheduler::put_orphans_aside() {
       removed(entry.path());
       continue;
     }
-    fs::path place = data_.orphans() / name;
-    for (int copy = 2; fs::exists(fs::symlink_status(place)); ++copy)
-      place = data_.orphans() / (name + "-" + std::to_string(copy));
+    fs::path target = data_.orphans() / name;
+    for (int copy = 2; fs::exists(fs::symlink_status(target)); ++copy)
+      target = data_.orphans() / (name + "-" + std::to_string(copy));
     fs::create_directories(data_.orphans());
-    fs::rename(entry.path(), place);
-    ++done_.orphans;
+    fs::rename(entry.path(), target);
+    ++counters_.orphans;
     log_error("orphan", {{"directory", entry.path().string()},
-                         {"moved_to", place.string()},
+                         {"moved_to", target.string()},
                          {"why", "the queue knows no job of this name; was the queue lost or restored?"}});
   }
   removed(data_.scratch());
@@ -285,15 +255,14 @@ void Scheduler::put_orphans_aside() {
 }
 
 void Scheduler::drain() {
-  if (stopped_.exchange(true)) return;
-  draining_ = true;
+  if (draining_.exchange(true)) return;
   wake_.notify_one();
   if (thread_.joinable()) thread_.join();
 }
 
 /// In the scheduler's own thread: local runs ask the kernel to kill them when the thread that started them ends.
 void Scheduler::end_runs() {
-  const bool leave = engine_.executor().outlives_this_process();  // the next talusd takes them over
+  const bool leave = engine_.executor().outlives_this_process();  // the next talusd adopts them
   const Steady::time_point end = Steady::now() + config_.grace;
   log_info("draining", {{"workers", engine_.running()}, {"grace_s", leave ? 0 : config_.grace.count()}});
   if (!leave) engine_.stop();

@@ -1,53 +1,79 @@
 #pragma once
-// One thread that carries out what the queue holds: the runs of studies by the engine, their statistics at the end, and
-// echo jobs.
+// The thread that carries out the queue: the runs of studies by the engine, their statistics at the end, and echo jobs.
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
-#include <memory>
 #include <mutex>
 #include <set>
 #include <thread>
 
-#include "jobs/changes.hpp"
 #include "jobs/commands.hpp"
-#include "jobs/data_directory.hpp"
 #include "queue/store.hpp"
 #include "study/engine.hpp"
 
 namespace talus::service {
 
-/// Numbers for /metrics.
-struct WorkDone {
-  std::atomic<std::int64_t> done{0}, failed{0}, crashed{0}, given_back{0}, stale{0};
-  std::atomic<std::int64_t> wall_clock_ms{0};  ///< of the done ones
-  std::atomic<int> running{0};
-  std::atomic<int> orphans{0};  ///< directories put aside at start
+/// Counts for /metrics, since talusd started.
+struct RunCounters {
+  std::array<std::atomic<std::int64_t>, 6> ended{};  ///< runs by RunEvent::Kind
+  std::atomic<std::int64_t> wall_clock_ms{0};        ///< of the done ones
+  std::atomic<int> running{0};                       ///< now
+  std::atomic<int> orphans{0};                       ///< directories moved to DATA/orphans at start
+};
+
+/// Wakes the requests that wait for a change of a job. Thread-safe.
+class ChangeNotifier {
+ public:
+  void notify() {
+    {
+      const std::lock_guard lock(mutex_);
+      ++count_;
+    }
+    changed_.notify_all();
+  }
+  std::uint64_t count() const {
+    const std::lock_guard lock(mutex_);
+    return count_;
+  }
+  /// Waits until the count differs from `seen`, at most for `limit`.
+  void wait(std::uint64_t seen, std::chrono::milliseconds limit) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, limit, [&] { return count_ != seen; });
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::uint64_t count_ = 0;
 };
 
 class Scheduler {
  public:
-  Scheduler(const Config& config, Store& store, Changes& changes);
-  ~Scheduler();
+  Scheduler(const Config& config, Store& store);
+  ~Scheduler() { drain(); }
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
 
-  /// Requeues what an earlier talusd held, puts directories of no known job aside, and starts to work.
+  /// Requeues the runs that an earlier talusd held, moves directories of unknown jobs aside, and starts the thread.
+  /// @throws StorageError, std::filesystem::filesystem_error
   void start();
-  /// Stops claiming, asks the runs to checkpoint, requeues them; kills what has not ended within the grace.
+  /// Stops claiming, asks the runs to write a checkpoint, requeues them; kills those that have not ended within the
+  /// grace period.
   void drain();
-  /// Something has changed: read the queue now, and check whether the leases still hold. Thread-safe.
+  /// Tells the thread and the waiting requests that the queue has changed. Thread-safe.
   /// @param job  that has been dismissed, extended or retried, if one has
   void wake(std::optional<std::int64_t> job = {});
-  const WorkDone& work_done() const { return done_; }
+  const RunCounters& counters() const { return counters_; }
+  ChangeNotifier& changes() { return changes_; }
 
  private:
   using Steady = std::chrono::steady_clock;
 
   void loop();
   void tick();
-  void wait_for(std::chrono::milliseconds most);
+  void wait_for(std::chrono::milliseconds limit);
   void end_runs();
   EngineOptions engine_options();
   void count(const RunEvent& event);
@@ -56,29 +82,28 @@ class Scheduler {
   void note_pending_reasons();
   void run_echo();
   void remove_dismissed();
-  void put_orphans_aside();
+  void move_orphans_aside();
   bool room_on_disk() const;
 
   const Config& config_;
   DataDirectory data_;
   Store& store_;
-  Changes& changes_;
-  Commands commands_;
-  WorkDone done_;
+  ChangeNotifier changes_;
+  RunCounters counters_;
   Engine engine_;
 
-  std::set<StudyNumber> pending_;  ///< jobs that say why none of their runs is under way
+  std::set<StudyNumber> pending_;  ///< jobs with a recorded reason why none of their runs is under way
   Steady::time_point next_renewal_{}, next_reasons_{}, next_removal_{};
   bool read_queue_ = true;  ///< the queue may hold something to do
   bool echo_waiting_ = false;
-  bool told_trouble_ = false;
-  bool removing_ = true;  ///< look for directories of dismissed jobs
+  bool in_trouble_ = false;  ///< the last tick failed, and the log says so
+  bool removing_ = true;     ///< directories of dismissed jobs may be left
 
   std::mutex mutex_;
   std::condition_variable wake_;
   bool woken_ = false;
-  std::set<StudyNumber> changed_;  ///< studies that the engine must read anew
-  std::atomic<bool> draining_{false}, stopped_{false};
+  std::set<StudyNumber> changed_;  ///< studies that the engine must read again
+  std::atomic<bool> draining_{false};
   std::thread thread_;
 };
 

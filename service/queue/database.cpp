@@ -22,7 +22,7 @@ void prepare(SQLite::Database& db) {
   db.exec("PRAGMA foreign_keys = ON");
 }
 
-/// A measure that has joined the table since the database was made becomes a column; runs of before have no value.
+/// Adds a column for each measure that the database does not have yet; it is NULL in the runs recorded before.
 void add_measure_columns(SQLite::Database& db) {
   std::set<std::string> columns;
   for (SQLite::Statement query(db, "SELECT name FROM pragma_table_info('runs')"); query.executeStep();)
@@ -34,15 +34,16 @@ void add_measure_columns(SQLite::Database& db) {
     db.exec("DROP INDEX IF EXISTS runs_measures");
     db.exec(std::string("ALTER TABLE runs ADD COLUMN ") + measure.key + " REAL");
   }
-  // What histograms read: the measures of the runs that are done, in order. With the state among its columns the index
-  // covers the query, which otherwise reads every row for it.
-  db.exec("CREATE INDEX IF NOT EXISTS runs_measures ON runs (job, floor, idx, state" + all + ") WHERE state = 'done'");
+  // For histograms: the measures of the runs that are done, in order. With the state among its columns the index covers
+  // the query, so no row of the table is read.
+  db.exec("CREATE INDEX IF NOT EXISTS runs_measures ON runs (job, level, kind, idx, state" + all +
+          ") WHERE state = 'done'");
 }
 
 SQLite::Database open(const std::filesystem::path& path) try {
   return {path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, busy_timeout_ms};
 } catch (const SQLite::Exception& e) {
-  throw StorageError(StorageError::Kind::other, "cannot open " + path.string() + ": " + e.what());
+  throw StorageError("cannot open " + path.string() + ": " + e.what());
 }
 
 }  // namespace
@@ -63,9 +64,8 @@ void Database::migrate() {
   write([&](SQLite::Database& db) {
     const int found = db.execAndGet("PRAGMA user_version").getInt();
     if (found > known)
-      throw StorageError(StorageError::Kind::other, path_.string() + " is of version " + std::to_string(found) +
-                                                        ", which is newer than " + std::to_string(known) +
-                                                        "; use the newer talusd");
+      throw StorageError(path_.string() + " is of version " + std::to_string(found) + ", which is newer than " +
+                         std::to_string(known) + "; use the newer talusd");
     for (int i = found; i < known; ++i) db.exec(migrations[i]);
     add_measure_columns(db);
     if (found < known) db.exec("PRAGMA user_version = " + std::to_string(known));
@@ -88,23 +88,21 @@ Database::Reader::~Reader() {
 }
 
 void Database::throw_storage_error(const SQLite::Exception& e) {
-  using Kind = StorageError::Kind;
   switch (e.getErrorCode()) {
     case SQLITE_FULL:
-      throw StorageError(Kind::full, "the disk is full: nothing can be recorded until there is room");
+      throw StorageError("the disk is full: nothing can be recorded until there is room", true);
     case SQLITE_READONLY:
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
-      throw StorageError(Kind::read_only, std::string("the queue cannot be written: ") + e.what());
+      throw StorageError(std::string("the queue cannot be written: ") + e.what());
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      throw StorageError(Kind::busy, "the queue is busy; try again");
-    case SQLITE_IOERR:
-      // A disk without room for the log shows itself this way too.
-      throw StorageError(Kind::full,
-                         std::string("the queue cannot be written, most likely for want of room: ") + e.what());
+      throw StorageError("the queue is busy; try again");
+    case SQLITE_IOERR:  // also when there is no room for the write-ahead log
+      throw StorageError(std::string("the queue cannot be written, probably because the disk is full: ") + e.what(),
+                         true);
     default:
-      throw StorageError(Kind::other, std::string("the queue: ") + e.what());
+      throw StorageError(std::string("the queue: ") + e.what());
   }
 }
 

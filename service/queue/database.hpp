@@ -11,11 +11,10 @@
 
 namespace talus::service {
 
-/// What the database says when it can't: sorted by what a person can do about it.
+/// The database cannot be read or written.
 struct StorageError : std::runtime_error {
-  enum class Kind { full, read_only, busy, other };
-  StorageError(Kind what, const std::string& text) : std::runtime_error(text), kind(what) {}
-  Kind kind;
+  explicit StorageError(const std::string& text, bool full = false) : std::runtime_error(text), disk_full(full) {}
+  bool disk_full;
 };
 
 class Database {

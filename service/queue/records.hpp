@@ -1,6 +1,7 @@
 #pragma once
-// What the queue keeps: jobs, and beneath each its runs.
+// Jobs and their runs as the queue records them.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -8,22 +9,31 @@
 #include <vector>
 
 #include "base/clock.hpp"
-#include "study/record.hpp"
+#include "study/store.hpp"
 #include "support/measures.hpp"
 
 namespace talus::service {
 
 enum class JobState { accepted, running, successful, failed, dismissed };
-/// "accepted", ...: the words of OGC API - Processes.
-const char* word(JobState state);
-std::optional<JobState> job_state(const std::string& word);
+/// The words of OGC API - Processes.
+inline constexpr std::array job_words{"accepted", "running", "successful", "failed", "dismissed"};
 inline bool ended(JobState s) { return s != JobState::accepted && s != JobState::running; }
 
 enum class RunState { queued, leased, done, failed };
-const char* word(RunState state);
-std::optional<RunState> run_state(const std::string& word);
+inline constexpr std::array run_words{"queued", "leased", "done", "failed"};
 
-/// What a job is when it is handed in.
+inline const char* word(JobState state) { return job_words[static_cast<std::size_t>(state)]; }
+inline const char* word(RunState state) { return run_words[static_cast<std::size_t>(state)]; }
+
+template <class State, std::size_t n>
+std::optional<State> state_of(const std::array<const char*, n>& words, const std::string& word) {
+  const auto at = std::find(words.begin(), words.end(), word);
+  return at == words.end() ? std::nullopt : std::optional(static_cast<State>(at - words.begin()));
+}
+inline std::optional<JobState> job_state(const std::string& word) { return state_of<JobState>(job_words, word); }
+inline std::optional<RunState> run_state(const std::string& word) { return state_of<RunState>(run_words, word); }
+
+/// A job as it is submitted.
 struct NewJob {
   std::string id;
   std::string process;
@@ -31,8 +41,8 @@ struct NewJob {
   std::string title = {};
   std::string inputs = "{}";  ///< as the process needs them later, JSON
   std::int64_t seed = 0;
-  std::int64_t planned = 0;  ///< realizations
-  std::int64_t floor = 0;    ///< replicates for the noise floor
+  std::int64_t planned = 0;     ///< realizations
+  std::int64_t replicates = 0;  ///< of realization 0, for the numerical noise
   double max_failed_share = 1.0;
   bool may_stop_early = false;
   std::string case_hash = {};
@@ -41,14 +51,14 @@ struct NewJob {
 };
 
 struct Job : NewJob {
-  std::int64_t number = 0;  ///< its row; grows with time
+  std::int64_t number = 0;  ///< of its row; grows from job to job
   JobState state = JobState::accepted;
-  std::string message = {};  ///< how it ended; until then why none of its runs is under way
+  std::string message = {};  ///< of an ended job: how it ended; of an open one: why none of its runs is under way
   Milliseconds created = 0, updated = 0;
   std::optional<Milliseconds> started = {}, finished = {};
   std::int64_t done = 0, failed = 0;  ///< realizations
-  std::int64_t floor_made = 0;        ///< replicates, done or failed
-  std::int64_t version = 1;           ///< counts the changes
+  std::int64_t replicates_ended = 0;  ///< done or failed
+  std::int64_t version = 1;           ///< grows with every change
 };
 
 struct Run {
@@ -74,21 +84,21 @@ struct JobFilter {
 /// Which realizations to list, by index.
 struct RunFilter {
   std::optional<RunState> state = {};
-  const Measure* measure = &measure_table[0];  ///< that the bounds are about
+  const Measure* measure = &measure_table[0];  ///< to which the bounds apply
   std::optional<double> least = {}, below = {}, most = {};
   std::int64_t after = -1;
   int limit = 100;
 };
 
-/// An answer kept for a request with an Idempotency-Key.
-struct Remembered {
+/// The response to a request with an Idempotency-Key, repeated when the request comes again.
+struct StoredResponse {
   std::string subject, key, body_hash;
   int status = 0;
   std::string location = {}, body = {};
 };
 
-/// Numbers for /metrics.
-struct Census {
+/// How many jobs and runs are in each state, for /metrics.
+struct StateCounts {
   std::array<std::int64_t, 5> jobs{};  ///< by JobState
   std::array<std::int64_t, 4> runs{};  ///< by RunState, of all jobs that are not dismissed
 };

@@ -1,15 +1,21 @@
-#include "case/checks.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "case/outline.hpp"
+#include "case/sections.hpp"
 #include "particles/geometry.hpp"
 #include "simulation/particle_setup.hpp"
 #include "support/text.hpp"
 
 namespace talus {
 namespace {
+
+/// Area of the whole slide. [m2]
+double slide_area(const Model& model) {
+  double sum = 0.0;
+  for (const SlidePart& part : model.slide) sum += area(part.outline);
+  return sum;
+}
 
 void check_apart(const Model& model, const SourceLocations& origins, Faults& faults) {
   for (std::size_t a = 0; a < model.slide.size(); ++a)
@@ -28,7 +34,7 @@ bool check_between_ends(const SlidePart& part, const Vertices& origin, const Ter
     if (v.x >= left && v.x <= right) continue;
     const bool beyond_left = v.x < left;
     const bool wall = beyond_left ? terrain.left_wall : terrain.right_wall;
-    faults.add(origin.points.size() == part.outline.size() ? origin.place(k) : origin.source,
+    faults.add(origin.points.size() == part.outline.size() ? origin.location(k) : origin.source,
                to_text(v) + " lies beyond the bed's " + (beyond_left ? "left" : "right") +
                    " end, x = " + to_text(beyond_left ? left : right) +
                    (wall ? ", where a wall stands" : ": soil there has no ground beneath it"));
@@ -40,7 +46,7 @@ bool check_between_ends(const SlidePart& part, const Vertices& origin, const Ter
 void check_on_ground(const SlidePart& part, const Vertices& origin, const Model& model, Faults& faults) {
   const Terrain& terrain = model.terrain;
   if (!terrain.closed && !check_between_ends(part, origin, terrain, faults)) return;
-  const Intrusion in =
+  const Penetration in =
       terrain.closed ? reach_outside_ring(part.outline, terrain.bed) : depth_below_bed(part.outline, terrain.bed);
   if (in.depth > 0.5 * model.dx)
     faults.add(origin.source,
@@ -49,10 +55,10 @@ void check_on_ground(const SlidePart& part, const Vertices& origin, const Model&
 }
 
 void check_counts(const Model& model, Faults& faults) {
-  double soil = 0.0;
-  for (const SlidePart& part : model.slide) soil += area(part.outline);
+  const double soil = slide_area(model);
   const double cells = soil / (model.dx * model.dx);
-  const double line = wall_line(model.terrain, model.dx, model.placement).length();
+  double line = 0.0;
+  for (const Polyline& wall : wall_lines(model.boundaries, model.dx, model.placement)) line += wall.length();
   const double estimate = cells + model.walls.layers * line / model.dx;
   if (cells < 1.0)
     faults.add("/particle_spacing_m", "leaves no particle: the slide's area, " + rounded(soil) +
@@ -98,8 +104,7 @@ void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings) {
   if (density < 500.0 || density > 5000.0)
     warnings.push_back({"/material/density_kg_m3",
                         to_text(density) + " kg/m3 is unusual for soil, 1000 to 3000 are common; is the unit right?"});
-  double cells = 0.0;
-  for (const SlidePart& part : model.slide) cells += area(part.outline) / (model.dx * model.dx);
+  const double cells = slide_area(model) / (model.dx * model.dx);
   if (cells < 100.0)
     warnings.push_back({"/particle_spacing_m", "leaves about " + rounded(cells) +
                                                    " soil particles, too few for a meaningful run; a tenth of the flow "

@@ -2,10 +2,9 @@
 
 #include <cstdint>
 
-#include "case/aliases.hpp"
-#include "case/checks.hpp"
 #include "case/overrides.hpp"
 #include "case/sections.hpp"
+#include "particles/geometry.hpp"
 #include "support/digest.hpp"
 
 namespace talus {
@@ -13,41 +12,12 @@ namespace {
 
 constexpr Names<Placement> placements[] = {{"cells", Placement::cells}, {"nodes", Placement::nodes}};
 
-LoadedCase load_document(Json document, const std::filesystem::path& directory,
-                         std::span<const std::string> overrides) {
-  Faults faults;
-  LoadedCase out;
-  std::vector<std::string> texts(overrides.begin(), overrides.end());
-  out.warnings = replace_aliases(document, texts);
-  const std::vector<Override> applied = apply_overrides(document, texts, faults);
-  SourceLocations origins;
-  ObjectReader root(document, "", faults);
-  out.value = read_case(root, directory, origins);
-  out.resolved = root.finish();
-  const auto free_of_faults = [&](std::initializer_list<const char*> pointers) {
-    for (const char* p : pointers)
-      if (!faults.none_under(p)) return false;
-    return true;
-  };
-  // A CSV fault stands at its file, not under /terrain or /slide: then bed or slide is empty.
-  const bool shaped = !out.value.model.terrain.bed.empty() && !out.value.model.slide.empty();
-  if (shaped &&
-      free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/max_particles", "/walls", "/particle_placement"}))
-    check_geometry(out.value.model, origins, faults);
-  if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
-  if (!faults.empty()) throw ConfigError(name_origins(faults.all(), applied));
-  for (Fault& warning : find_warnings(out.value)) out.warnings.push_back(std::move(warning));
-  out.warnings = name_origins(std::move(out.warnings), applied);
-  out.hash = case_hash(out.resolved);
-  return out;
-}
-
 }  // namespace
 
 Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceLocations& origins) {
   Case c;
   Model& m = c.model;
-  in.required_string("title", c.title, {1, 200}, {"One line that names the case."});
+  in.string("title", c.title, {1, 200}, {"One line that names the case."});
   in.string("description", c.description, {0, 10'000}, {"Where the data come from and what they leave out."});
   in.required_number("particle_spacing_m", m.dx, {"m", 0.0, 1000.0, true},
                      {"Spacing dx of the particles at the start; every particle stands for dx by dx of soil.",
@@ -79,8 +49,10 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
             [&](ObjectReader& section) { read_rheology(section, m.rheology); });
   in.object("numerics", "How the equations are discretised.", Absent::defaults,
             [&](ObjectReader& section) { read_numerics(section, m.numerics); });
+  Boundary& bed = m.boundaries.emplace_back();
+  bed.line = ground_line(m.terrain);
   in.object("walls", "How the ground acts on the soil.", Absent::defaults,
-            [&](ObjectReader& section) { read_walls(section, m.walls); });
+            [&](ObjectReader& section) { read_walls(section, m.walls, bed); });
   in.object("time", "When to stop and what to keep.", Absent::fault,
             [&](ObjectReader& section) { read_time(section, m.time); });
   in.object("random_field",
@@ -94,15 +66,37 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
 }
 
 LoadedCase load_case(const std::filesystem::path& path, std::span<const std::string> overrides) {
-  Json document = parse_json(read_text(path), path.filename().string());
-  LoadedCase out = load_document(std::move(document), path.parent_path(), overrides);
+  LoadedCase out = load_case(parse_json(read_text(path), path.filename().string()), path.parent_path(), overrides);
   out.path = path;
   return out;
 }
 
-LoadedCase load_case(const Json& document, const std::filesystem::path& directory,
-                     std::span<const std::string> overrides) {
-  return load_document(document, directory, overrides);
+LoadedCase load_case(Json document, const std::filesystem::path& directory, std::span<const std::string> overrides) {
+  Faults faults;
+  LoadedCase out;
+  std::vector<std::string> texts(overrides.begin(), overrides.end());
+  out.warnings = replace_aliases(document, texts);
+  const std::vector<Override> applied = apply_overrides(document, texts, faults);
+  SourceLocations origins;
+  ObjectReader root(document, "", faults);
+  out.value = read_case(root, directory, origins);
+  out.resolved = root.finish();
+  const auto free_of_faults = [&](std::initializer_list<const char*> pointers) {
+    for (const char* p : pointers)
+      if (!faults.none_under(p)) return false;
+    return true;
+  };
+  // A CSV fault stands at its file, not under /terrain or /slide: then bed or slide is empty.
+  const bool shaped = !out.value.model.terrain.bed.empty() && !out.value.model.slide.empty();
+  if (shaped &&
+      free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/max_particles", "/walls", "/particle_placement"}))
+    check_geometry(out.value.model, origins, faults);
+  if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
+  if (!faults.empty()) throw ConfigError(name_origins(faults.all(), applied));
+  for (Fault& warning : find_warnings(out.value)) out.warnings.push_back(std::move(warning));
+  out.warnings = name_origins(std::move(out.warnings), applied);
+  out.hash = case_hash(out.resolved);
+  return out;
 }
 
 std::string case_hash(const Json& resolved) {
@@ -114,6 +108,23 @@ std::string case_hash(const Json& resolved) {
                             "max_failed_share", "histogram_edges_m"})
       study->erase(key);
   return hex_digits(fnv1a64(deciding.dump()));
+}
+
+Plan make_plan(const LoadedCase& loaded, std::uint64_t seed, const std::string& version) {
+  const Case& c = loaded.value;
+  if (c.study.realizations > 1) {
+    const char* same = "every realization would be the same: ";
+    if (!c.field) throw ConfigError("/random_field", std::string(same) + "a study needs a random field");
+    if (c.field->sigma == 0.0)
+      throw ConfigError("/random_field", std::string(same) + "the standard deviation of the field is 0");
+    if (!c.field->xi.empty())
+      throw ConfigError("/random_field/xi", std::string(same) + "the coefficients are given; remove them to draw");
+  }
+  if (c.study.sampling == Sampling::latin_hypercube && c.study.stop_half_width)
+    throw ConfigError(
+        "/study/stop_when_ci_half_width_below_m",
+        "a Latin hypercube is one sample of a fixed size and cannot stop early; use monte_carlo or remove this");
+  return {.title = c.title, .case_hash = loaded.hash, .version = version, .seed = seed, .study = c.study};
 }
 
 }  // namespace talus

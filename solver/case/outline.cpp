@@ -43,15 +43,7 @@ bool segments_meet(Vec2 a, Vec2 b, Vec2 c, Vec2 d) {
          (b_side == 0 && between(c, d, b));
 }
 
-/// Height of the bed at x, which lies within its extent.
-double bed_height(std::span<const Vec2> bed, double x) {
-  const auto right =
-      std::upper_bound(bed.begin() + 1, bed.end() - 1, x, [](double value, Vec2 v) { return value < v.x; });
-  const Vec2 a = *(right - 1), b = *right;
-  return a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x);
-}
-
-/// The region under (sign -1) or over (sign +1) a left-to-right surface, as far as `far`.
+/// The region under (sign -1) or over (sign +1) a left-to-right surface, bounded by y = `far`.
 Polygon half_plane(std::span<const Vec2> surface, double far) {
   std::vector<Vec2> ring(surface.begin(), surface.end());
   ring.push_back({surface.back().x, far});
@@ -73,17 +65,17 @@ std::vector<Vec2> normal_form(const Polygon& polygon) {
 
 }  // namespace
 
-std::optional<Meeting> self_meeting(std::span<const Vec2> vertices, bool closed) {
+std::optional<EdgePair> self_intersection(std::span<const Vec2> vertices, bool closed) {
   const std::size_t n = vertices.size(), edges = closed ? n : n - 1;
   const auto start = [&](std::size_t e) { return vertices[e]; };
   const auto end = [&](std::size_t e) { return vertices[(e + 1) % n]; };
   // Neighbours share a vertex; they are at fault only when one folds back over the other.
   for (std::size_t e = 0; e < edges; ++e) {
-    if (start(e) == end(e)) return Meeting{e, e};
+    if (start(e) == end(e)) return EdgePair{e, e};
     const std::size_t next = (e + 1) % n;
     if (next >= edges) continue;
     const Vec2 here = end(e) - start(e), there = end(next) - start(next);
-    if (cross(here, there) == 0.0 && dot(here, there) < 0.0) return Meeting{e, next};
+    if (cross(here, there) == 0.0 && dot(here, there) < 0.0) return EdgePair{e, next};
   }
   // All other pairs, swept from left to right.
   const auto left = [&](std::size_t e) { return std::min(start(e).x, end(e).x); };
@@ -94,7 +86,7 @@ std::optional<Meeting> self_meeting(std::span<const Vec2> vertices, bool closed)
     for (std::size_t j = i + 1; j < edges && left(order[j]) <= std::max(start(order[i]).x, end(order[i]).x); ++j) {
       const auto [a, b] = std::minmax(order[i], order[j]);
       const bool neighbours = b == a + 1 || (closed && a == 0 && b + 1 == edges);
-      if (!neighbours && segments_meet(start(a), end(a), start(b), end(b))) return Meeting{a, b};
+      if (!neighbours && segments_meet(start(a), end(a), start(b), end(b))) return EdgePair{a, b};
     }
   return {};
 }
@@ -112,22 +104,28 @@ double shared_area(std::span<const Vec2> a, std::span<const Vec2> b) {
 }
 
 std::vector<std::vector<Vec2>> between_surfaces(std::span<const Vec2> ground, std::span<const Vec2> slip) {
-  double lo = ground[0].y, hi = slip[0].y;
-  for (const Vec2& v : ground) lo = std::min(lo, v.y);
-  for (const Vec2& v : slip) hi = std::max(hi, v.y);
-  for (const Vec2& v : slip) lo = std::min(lo, v.y);
-  for (const Vec2& v : ground) hi = std::max(hi, v.y);
+  Box box{ground[0], ground[0]};
+  for (const auto& surface : {ground, slip})
+    for (const Vec2& v : surface) box.include(v);
   Polygons pieces;
-  bg::intersection(half_plane(ground, lo - 1.0), half_plane(slip, hi + 1.0), pieces);
+  bg::intersection(half_plane(ground, box.lo.y - 1.0), half_plane(slip, box.hi.y + 1.0), pieces);
   std::vector<std::vector<Vec2>> outlines;
   for (const Polygon& piece : pieces) outlines.push_back(normal_form(piece));
   std::sort(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) { return a[0].x < b[0].x; });
   return outlines;
 }
 
-Intrusion depth_below_bed(std::span<const Vec2> outline, std::span<const Vec2> bed) {
-  Intrusion worst;
-  const auto look = [&](Vec2 p) {
+double bed_height(std::span<const Vec2> bed, double x) {
+  x = std::clamp(x, bed.front().x, bed.back().x);
+  const auto right =
+      std::upper_bound(bed.begin() + 1, bed.end() - 1, x, [](double value, Vec2 v) { return value < v.x; });
+  const Vec2 a = *(right - 1), b = *right;
+  return a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x);
+}
+
+Penetration depth_below_bed(std::span<const Vec2> outline, std::span<const Vec2> bed) {
+  Penetration worst;
+  const auto compare = [&](Vec2 p) {
     if (p.x < bed.front().x || p.x > bed.back().x) return;
     const double depth = bed_height(bed, p.x) - p.y;
     if (depth > worst.depth) worst = {p, depth};
@@ -135,20 +133,20 @@ Intrusion depth_below_bed(std::span<const Vec2> outline, std::span<const Vec2> b
   // Along an edge the depth is piecewise linear: its maximum lies at the edge's ends or above a vertex of the bed.
   for (std::size_t k = 0; k < outline.size(); ++k) {
     Vec2 a = outline[k], b = outline[(k + 1) % outline.size()];
-    look(a);
+    compare(a);
     if (a.x > b.x) std::swap(a, b);
     auto v = std::upper_bound(bed.begin(), bed.end(), a.x, [](double x, Vec2 w) { return x < w.x; });
-    for (; v != bed.end() && v->x < b.x; ++v) look({v->x, a.y + (b.y - a.y) * (v->x - a.x) / (b.x - a.x)});
+    for (; v != bed.end() && v->x < b.x; ++v) compare({v->x, a.y + (b.y - a.y) * (v->x - a.x) / (b.x - a.x)});
   }
   return worst;
 }
 
-Intrusion reach_outside_ring(std::span<const Vec2> outline, std::span<const Vec2> ring) {
+Penetration reach_outside_ring(std::span<const Vec2> outline, std::span<const Vec2> ring) {
   const Polygon inside = to_polygon(ring);
   bg::model::linestring<Point> edge(inside.outer().begin(), inside.outer().end());
   Polygons outside;
   bg::difference(to_polygon(outline), inside, outside);
-  Intrusion worst;
+  Penetration worst;
   for (const Polygon& piece : outside) {
     // Rock that stands up into the outline has all its vertices on the ring: its thickness, 2 area / perimeter, counts.
     const double thickness = 2.0 * bg::area(piece) / bg::perimeter(piece);

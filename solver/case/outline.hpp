@@ -1,5 +1,5 @@
 #pragma once
-// Plane geometry of polylines and outlines, as far as a case must be checked.
+// Plane geometry of polylines and outlines for the checks of a case.
 
 #include <optional>
 #include <span>
@@ -9,14 +9,14 @@
 
 namespace talus {
 
-/// Two edges of a polyline (edge k runs from vertex k to the next) that meet where they should not.
-struct Meeting {
+/// Two edges of a polyline that cross or touch; edge k runs from vertex k to the next.
+struct EdgePair {
   std::size_t first = 0;
   std::size_t second = 0;
 };
 
 /// The first pair of edges that cross, touch or fold back on one another; neighbours may share their vertex.
-std::optional<Meeting> self_meeting(std::span<const Vec2> vertices, bool closed);
+std::optional<EdgePair> self_intersection(std::span<const Vec2> vertices, bool closed);
 
 /// The area of an outline, positive when walked counter-clockwise. [m2]
 double signed_area(std::span<const Vec2> outline);
@@ -28,16 +28,20 @@ double shared_area(std::span<const Vec2> a, std::span<const Vec2> b);
 /// { slip < y < ground }, counter-clockwise from its leftmost vertex. Both surfaces run left to right.
 std::vector<std::vector<Vec2>> between_surfaces(std::span<const Vec2> ground, std::span<const Vec2> slip);
 
+/// Height of an open bed at x, of its nearer end beyond it. [m]
+double bed_height(std::span<const Vec2> bed, double x);
+
 /// A point of the outline's edge that lies deepest on the wrong side of the ground, and how deep. [m]
-struct Intrusion {
+struct Penetration {
   Vec2 at;
   double depth = 0.0;
 };
 
-/// How deep an outline reaches below an open bed, within the bed's extent; depth 0 when nowhere.
-Intrusion depth_below_bed(std::span<const Vec2> outline, std::span<const Vec2> bed);
+/// How deep an outline reaches below an open bed, within the bed's extent; depth 0 where it does not.
+Penetration depth_below_bed(std::span<const Vec2> outline, std::span<const Vec2> bed);
 
-/// How far an outline reaches out of a closed bed, or how thick the rock is that it covers; depth 0 when nowhere.
-Intrusion reach_outside_ring(std::span<const Vec2> outline, std::span<const Vec2> ring);
+/// How far an outline reaches out of a closed bed, or the thickness of the rock inside it; depth 0 where it does
+/// neither.
+Penetration reach_outside_ring(std::span<const Vec2> outline, std::span<const Vec2> ring);
 
 }  // namespace talus

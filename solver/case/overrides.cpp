@@ -17,6 +17,36 @@ std::vector<std::string> split_path(std::string_view path) {
   return parts;
 }
 
+/// "study.seed=5" -> "/study/seed" and "5"
+struct PathAndWord {
+  Json::json_pointer path;
+  std::string word;
+
+  explicit PathAndWord(std::string_view text) {
+    const std::size_t end = std::min(text.find('='), text.size());
+    for (const std::string& part : split_path(text.substr(0, end))) path /= part;
+    word = text.substr(std::min(end + 1, text.size()));
+  }
+};
+
+/// @return whether the alias stands in the document, alone
+bool replace_in(Json& document, const PathAndWord& alias, const PathAndWord& name) {
+  if (!document.contains(alias.path)) return false;
+  const Json value = document[alias.path];
+  if (alias.word.empty() ? document.contains(name.path) : value != alias.word) return false;
+  document[alias.path.parent_pointer()].erase(alias.path.back());
+  document[name.path] = alias.word.empty() ? value : Json(name.word);
+  return true;
+}
+
+/// Of an alias without a word, the part before the equals sign; else the whole text.
+bool replace_in(std::string& text, const CaseAlias& renamed) {
+  const bool with_word = renamed.alias.find('=') != std::string_view::npos;
+  if (std::string_view(text).substr(0, with_word ? text.size() : text.find('=')) != renamed.alias) return false;
+  text.replace(0, renamed.alias.size(), renamed.name);
+  return true;
+}
+
 /// JSON, or else a plain string. Limits and doubled keys of JSON are refused all the same.
 Json parse_value(std::string_view text, const std::string& source) {
   return Json::accept(text.begin(), text.end()) ? parse_json(text, source) : Json(std::string(text));
@@ -38,7 +68,7 @@ Json* enter(Json& node, const std::string& part, const std::string& pointer, Fau
   return nullptr;
 }
 
-/// Walks to the place and sets it; returns its pointer as far as it got.
+/// Sets the value at a path. @return the pointer of the value, or of the last part of the path that exists
 std::string set(Json& document, const std::vector<std::string>& parts, Json value, Faults& faults) {
   Json* node = &document;
   std::string pointer;
@@ -57,6 +87,17 @@ std::string set(Json& document, const std::vector<std::string>& parts, Json valu
 }
 
 }  // namespace
+
+std::vector<Fault> replace_aliases(Json& document, std::vector<std::string>& overrides) {
+  std::vector<Fault> warnings;
+  for (const CaseAlias& renamed : case_aliases) {
+    const PathAndWord alias(renamed.alias);
+    bool used = replace_in(document, alias, PathAndWord(renamed.name));
+    for (std::string& text : overrides) used = replace_in(text, renamed) || used;
+    if (used) warnings.push_back({alias.path.to_string(), "is an old spelling; write " + std::string(renamed.name)});
+  }
+  return warnings;
+}
 
 std::vector<Override> apply_overrides(Json& document, std::span<const std::string> overrides, Faults& faults) {
   std::vector<Override> applied;

@@ -1,14 +1,30 @@
 #pragma once
-// `--set key.path=value`: edits a document before it is checked, so that the same check holds for both.
+// Edits a document before it is checked, so that the same check holds for both: former spellings get their present
+// names, and `--set key.path=value` is applied.
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "support/faults.hpp"
 #include "support/json.hpp"
 
 namespace talus {
+
+/// A former or British spelling of a key or of a word; it works for one version, with a warning. `section.key`, or
+/// `section.key=word` for one word of a choice. The schema has the present names only.
+struct CaseAlias {
+  std::string_view alias;
+  std::string_view name;
+};
+inline constexpr CaseAlias case_aliases[] = {{"study.realisations", "study.realizations"},
+                                             {"rheology.yield=regularised", "rheology.yield=regularized"}};
+
+/// Puts the present names into a document and into `--set` texts. An alias beside its present name in one document is
+/// left, and so reported as unknown.
+/// @return a warning for each alias that was used
+std::vector<Fault> replace_aliases(Json& document, std::vector<std::string>& overrides);
 
 /// What a `--set` changed and how it was written.
 struct Override {

@@ -5,13 +5,13 @@
 
 #include "case/outline.hpp"
 #include "case/sections.hpp"
+#include "particles/geometry.hpp"
 #include "support/text.hpp"
 
 namespace talus {
 namespace {
 
-enum class End { wall, open };
-constexpr Names<End> ends[] = {{"wall", End::wall}, {"open", End::open}};
+constexpr Names<bool> ends[] = {{"wall", true}, {"open", false}};
 
 /// A ring whose first vertex is repeated at the end loses the repetition.
 void open_ring(Vertices& ring) {
@@ -22,15 +22,15 @@ void open_ring(Vertices& ring) {
 
 /// Faults of a ring or polyline that crosses itself.
 bool check_simple(const Vertices& v, bool closed, Faults& faults) {
-  const auto meeting = self_meeting(v.points, closed);
-  if (!meeting) return true;
-  const Vec2 from = v.points[meeting->second], to = v.points[(meeting->second + 1) % v.points.size()];
-  faults.add(v.place(meeting->second), meeting->first == meeting->second
-                                           ? "repeats the vertex before or after it, " + to_text(from)
-                                           : "starts an edge, " + to_text(from) + " to " + to_text(to) +
-                                                 ", that crosses or touches the edge from vertex " +
-                                                 std::to_string(meeting->first) + ", " +
-                                                 to_text(v.points[meeting->first]));
+  const auto crossing = self_intersection(v.points, closed);
+  if (!crossing) return true;
+  const Vec2 from = v.points[crossing->second], to = v.points[(crossing->second + 1) % v.points.size()];
+  faults.add(v.location(crossing->second), crossing->first == crossing->second
+                                               ? "repeats the vertex before or after it, " + to_text(from)
+                                               : "starts an edge, " + to_text(from) + " to " + to_text(to) +
+                                                     ", that crosses or touches the edge from vertex " +
+                                                     std::to_string(crossing->first) + ", " +
+                                                     to_text(v.points[crossing->first]));
   return false;
 }
 
@@ -39,8 +39,8 @@ bool check_left_to_right(const Vertices& v, bool steps_allowed, Faults& faults) 
   for (std::size_t k = 1; k < v.points.size(); ++k) {
     const double before = v.points[k - 1].x, x = v.points[k].x;
     if (x > before || (steps_allowed && x == before)) continue;
-    faults.add(v.place(k), "x = " + to_text(x) + " does not exceed the x before it, " + to_text(before) +
-                               ": vertices must run from left to right");
+    faults.add(v.location(k), "x = " + to_text(x) + " does not exceed the x before it, " + to_text(before) +
+                                  ": vertices must run from left to right");
     return false;
   }
   return true;
@@ -103,9 +103,7 @@ void cut_outlines(ObjectReader& in, const Vertices& ground, const Vertices& slip
 
 /// By default 5 particle spacings over the slide and over the walled ends of the bed.
 void read_wall_top(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
-  double highest = -1e6;
-  for (const SlidePart& part : slide.parts)
-    for (const Vec2& v : part.outline) highest = std::max(highest, v.y);
+  const double highest = slide.parts.empty() ? -1e6 : bounding_box(slide.parts).hi.y;
   const double left = t.left_wall && !t.bed.empty() ? t.bed.front().y : -1e6;
   const double right = t.right_wall && !t.bed.empty() ? t.bed.back().y : -1e6;
   const double bed = std::max(left, right);
@@ -117,22 +115,16 @@ void read_wall_top(ObjectReader& in, Terrain& t, const SlideInput& slide, double
     in.fault("wall_top_m", to_text(t.wall_top) + " does not lie above the bed at the walled end, y = " + to_text(bed));
 }
 
-void read_end(ObjectReader& in, std::string_view key, bool& wall, std::string_view sentence) {
-  End end = wall ? End::wall : End::open;
-  in.choice(key, end, ends, {sentence, "site"});
-  wall = end == End::wall;
-}
-
 void read_ends(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
   if (t.closed) {
     for (const char* key : {"left_end", "right_end", "wall_top_m"})
       if (in.find(key) != nullptr) in.fault(key, "has no meaning for a closed bed");
     return;
   }
-  read_end(in, "left_end", t.left_wall,
-           "What stands on the bed's first vertex: a vertical wall, or nothing. Open beds only.");
-  read_end(in, "right_end", t.right_wall,
-           "What stands on the bed's last vertex: a vertical wall, or nothing. Open beds only.");
+  in.choice("left_end", t.left_wall, ends,
+            {"What stands on the bed's first vertex: a vertical wall, or nothing. Open beds only.", "site"});
+  in.choice("right_end", t.right_wall, ends,
+            {"What stands on the bed's last vertex: a vertical wall, or nothing. Open beds only.", "site"});
   read_wall_top(in, t, slide, dx);
 }
 

@@ -28,7 +28,8 @@ constexpr Names<WallContact> contacts[] = {{"always", WallContact::always}, {"ap
 constexpr Names<WallSlip> slips[] = {
     {"no_slip", WallSlip::no_slip}, {"friction", WallSlip::friction}, {"free_slip", WallSlip::free_slip}};
 
-/// Times 0 < interval < 2 interval ... < end, where an end within a hair of a multiple counts as that multiple.
+/// Times 0 < interval < 2 interval ... < end, where an end that differs from a multiple by rounding counts as that
+/// multiple.
 std::vector<double> every(double interval, double end) {
   std::vector<double> times;
   for (std::int64_t k = 1; static_cast<double>(k) * interval < end * (1.0 - 1e-12); ++k)
@@ -127,23 +128,23 @@ void read_numerics(ObjectReader& in, Numerics& n) {
             {"Courant number of the time step when fixed_step_s is not given.", "Monaghan 1992"});
 }
 
-void read_walls(ObjectReader& in, Walls& w) {
+void read_walls(ObjectReader& in, Walls& w, Boundary& bed) {
   in.choice(
       "contact", w.contact, contacts,
       {"always: a wall acts on every particle near it; approaching: only on particles that come nearer, which keeps "
        "a pile chattering.",
        "[Z20] section 2.1 for approaching"});
-  in.choice("slip", w.slip, slips,
+  in.choice("slip", bed.slip, slips,
             {"no_slip: velocity vanishes at the wall; friction: the wall's own friction angle; free_slip: no shear.",
              "Takeda 1994, Morris 1997"});
   std::optional<double> angle;
   in.optional_number(
       "friction_angle_deg", angle, friction_angle,
       {"Friction angle of the wall; needed by slip friction, unused otherwise.", "interface shear test", "none"});
-  if (w.slip == WallSlip::friction && in.find("friction_angle_deg") == nullptr)
+  if (bed.slip == WallSlip::friction && in.find("friction_angle_deg") == nullptr)
     in.fault("friction_angle_deg",
              "is missing: slip \"friction\" needs the wall's angle; " + friction_angle.describe());
-  w.phi = radians(angle.value_or(0.0));
+  bed.phi = radians(angle.value_or(0.0));
   in.number("max_velocity_ratio", w.b_max, {"", 1.0, 100.0},
             {"Largest ratio of the mirrored velocity of a wall particle, b_max.", "Morris 1997"});
   in.integer("layers", w.layers, {"", 1.0, 20.0},

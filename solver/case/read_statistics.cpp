@@ -4,7 +4,7 @@
 
 #include "case/sections.hpp"
 #include "case/vertices.hpp"
-#include "random_field/marginals.hpp"
+#include "random_field/random_field.hpp"
 #include "support/text.hpp"
 
 namespace talus {

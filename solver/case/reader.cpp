@@ -10,6 +10,8 @@
 namespace talus {
 namespace {
 
+const Json empty_object = Json::object();
+
 /// Characters of UTF-8 text.
 std::size_t characters(std::string_view text) {
   return static_cast<std::size_t>(
@@ -71,11 +73,6 @@ ObjectReader ObjectReader::describing(Faults& ignored) {
   return reader;
 }
 
-const Json& ObjectReader::empty_object() {
-  static const Json empty = Json::object();
-  return empty;
-}
-
 const Json* ObjectReader::find(std::string_view key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
   if (value_ == nullptr) return nullptr;
@@ -87,11 +84,7 @@ void ObjectReader::fault(std::string_view key, std::string message) {
   if (value_ != nullptr) faults_.add(key.empty() ? pointer_ : pointer(key), std::move(message));
 }
 
-void ObjectReader::declare(std::string_view key, Json schema, const KeyText& text, const std::string& facts) {
-  declare(key, std::move(schema), text, facts, nullptr, false);
-}
-
-void ObjectReader::declare(std::string_view key, Json schema, const KeyText& text, const std::string& facts,
+void ObjectReader::declare(std::string_view key, const Json& schema, const KeyText& text, const std::string& facts,
                            const Json& fallback, bool required) {
   if (!describing_) return;
   std::string details = facts;
@@ -113,52 +106,36 @@ void ObjectReader::declare(std::string_view key, Json schema, const KeyText& tex
   schema_["properties"][std::string(key)] = std::move(described);
 }
 
-std::optional<double> ObjectReader::read_number(std::string_view key, const Quantity& q) {
+/// @param type  of JSON Schema: "number" or "integer"
+std::optional<double> ObjectReader::read_number(std::string_view key, const Quantity& q, const KeyText& text,
+                                                std::string_view type, const Json& fallback, bool required) {
+  declare(key, number_schema(q, type), text, facts_of(q, text.range_words), fallback, required);
   const Json* value = find(key);
-  return value == nullptr ? std::nullopt : talus::read_number(*value, q, pointer(key), faults_);
-}
-
-std::optional<double> ObjectReader::read_whole(std::string_view key, const Quantity& q) {
-  const std::optional<double> x = read_number(key, q);
-  if (!x || *x == std::floor(*x)) return x;
+  if (value == nullptr && required && default_words_.empty()) fault(key, "is missing; " + q.describe());
+  if (value == nullptr) return {};
+  const std::optional<double> x = talus::read_number(*value, q, pointer(key), faults_);
+  if (!x || type == "number" || *x == std::floor(*x)) return x;
   fault(key, to_text(*x) + " is not a whole number; " + q.describe());
   return {};
 }
 
 void ObjectReader::number(std::string_view key, double& value, const Quantity& q, const KeyText& text) {
-  if (describing_) declare(key, number_schema(q), text, facts_of(q, text.range_words), value, false);
-  value = read_number(key, q).value_or(value);
+  value = read_number(key, q, text, "number", value).value_or(value);
   record(key, value);
 }
 
 void ObjectReader::required_number(std::string_view key, double& value, const Quantity& q, const KeyText& text) {
-  if (describing_) declare(key, number_schema(q), text, facts_of(q, text.range_words), nullptr, true);
-  if (find(key) == nullptr && default_words_.empty()) fault(key, "is missing; " + q.describe());
-  value = read_number(key, q).value_or(value);
+  value = read_number(key, q, text, "number", nullptr, true).value_or(value);
   record(key, value);
 }
 
 void ObjectReader::optional_number(std::string_view key, std::optional<double>& value, const Quantity& q,
                                    const KeyText& text) {
-  if (describing_) declare(key, number_schema(q), text, facts_of(q, text.range_words));
-  if (const std::optional<double> x = read_number(key, q)) {
-    value = x;
-    record(key, *x);
-  }
-}
-
-std::optional<std::int64_t> ObjectReader::read_integer(std::string_view key, std::optional<std::int64_t> fallback,
-                                                       const Quantity& q, const KeyText& text) {
-  if (describing_)
-    declare(key, number_schema(q, "integer"), text, facts_of(q, text.range_words), fallback ? Json(*fallback) : Json(),
-            false);
-  if (const std::optional<double> x = read_whole(key, q)) fallback = static_cast<std::int64_t>(*x);
-  if (fallback) record(key, *fallback);
-  return fallback;
+  if (const auto read = read_number(key, q, text)) record(key, value.emplace(*read));
 }
 
 void ObjectReader::flag(std::string_view key, bool& value, const KeyText& text) {
-  if (describing_) declare(key, {{"type", "boolean"}}, text, "", value, false);
+  declare(key, {{"type", "boolean"}}, text, "", value);
   const Json* given = find(key);
   if (given != nullptr && !given->is_boolean()) fault(key, quote(*given) + " is neither true nor false");
   if (given != nullptr && given->is_boolean()) value = given->get<bool>();
@@ -166,43 +143,34 @@ void ObjectReader::flag(std::string_view key, bool& value, const KeyText& text) 
 }
 
 void ObjectReader::string(std::string_view key, std::string& value, Size length, const KeyText& text) {
-  read_string(key, value, length, text, false);
-}
-
-void ObjectReader::required_string(std::string_view key, std::string& value, Size length, const KeyText& text) {
-  read_string(key, value, length, text, true);
-}
-
-void ObjectReader::read_string(std::string_view key, std::string& value, Size length, const KeyText& text,
-                               bool required) {
+  const auto fits = [&](const std::string& s) {
+    const std::size_t n = characters(s);
+    return n >= length.least && n <= length.most;
+  };
+  const bool required = !fits(value);
   const std::string range = std::to_string(length.least) + " to " + std::to_string(length.most) + " characters";
-  if (describing_) {
-    Json schema = {{"type", "string"}};
-    if (length.least > 0) schema["minLength"] = length.least;
-    schema["maxLength"] = length.most;
-    declare(key, std::move(schema), text, range + "; ", value, required);
-  }
+  Json schema = {{"type", "string"}};
+  if (length.least > 0) schema["minLength"] = length.least;
+  schema["maxLength"] = length.most;
+  declare(key, schema, text, range + "; ", value, required);
   const Json* given = find(key);
-  if (given == nullptr && required) fault(key, "is missing; a string of " + range);
-  if (given != nullptr) {
-    const std::string* s = given->get_ptr<const std::string*>();
-    if (s == nullptr || characters(*s) < length.least || characters(*s) > length.most)
-      fault(key, quote(*given) + " is not a string of " + range);
-    else
-      value = *s;
-  }
+  const std::string* s = given == nullptr ? nullptr : given->get_ptr<const std::string*>();
+  if (s != nullptr && fits(*s))
+    value = *s;
+  else if (given != nullptr)
+    fault(key, quote(*given) + " is not a string of " + range);
+  else if (required)
+    fault(key, "is missing; a string of " + range);
   record(key, value);
 }
 
 void ObjectReader::numbers(std::string_view key, std::vector<double>& values, const Quantity& q, Size length,
                            const KeyText& text) {
-  if (describing_) {
-    Json schema = {{"type", "array"}};
-    if (length.least > 0) schema["minItems"] = length.least;
-    schema["maxItems"] = length.most;
-    schema["items"] = number_schema(q);
-    declare(key, std::move(schema), text, facts_of(q, text.range_words), Json::array(), length.least > 0);
-  }
+  Json schema = {{"type", "array"}};
+  if (length.least > 0) schema["minItems"] = length.least;
+  schema["maxItems"] = length.most;
+  schema["items"] = number_schema(q);
+  declare(key, schema, text, facts_of(q, text.range_words), Json::array(), length.least > 0);
   const Json* list = find(key);
   const auto has = [&](const char* limit, std::size_t count) {
     fault(key, "has " + std::to_string(list->size()) + " numbers, at " + limit + " " + std::to_string(count) +
@@ -225,9 +193,8 @@ void ObjectReader::numbers(std::string_view key, std::vector<double>& values, co
 
 std::size_t ObjectReader::pick(std::string_view key, std::span<const std::string> words, std::size_t fallback,
                                const KeyText& text) {
-  if (describing_)
-    declare(key, {{"type", "string"}, {"enum", std::vector<std::string>(words.begin(), words.end())}}, text, "",
-            words[fallback], false);
+  declare(key, {{"type", "string"}, {"enum", std::vector<std::string>(words.begin(), words.end())}}, text, "",
+          words[fallback]);
   if (const Json* value = find(key)) {
     const std::string* word = value->get_ptr<const std::string*>();
     const auto at = word == nullptr ? words.end() : std::find(words.begin(), words.end(), *word);
@@ -244,15 +211,20 @@ std::size_t ObjectReader::pick(std::string_view key, std::span<const std::string
   return fallback;
 }
 
-ObjectReader ObjectReader::enter(std::string_view key, Absent absent) {
+/// The reader of a member object; `value` is null where it is absent.
+ObjectReader ObjectReader::child_at(std::string_view key, const Json* value, Absent absent) {
   if (describing_) return describing(faults_);
-  if (const Json* value = find(key)) return {*value, pointer(key), faults_};
-  if (value_ != nullptr && absent == Absent::defaults) return {empty_object(), pointer(key), faults_};
+  if (value != nullptr) return {*value, pointer(key), faults_};
+  if (value_ != nullptr && absent == Absent::defaults) return {empty_object, pointer(key), faults_};
   fault(key, "is missing; an object");
   return {pointer(key), faults_, false};
 }
 
-void ObjectReader::leave(std::string_view key, std::string_view sentence, Absent absent, ObjectReader& child) {
+void ObjectReader::object(std::string_view key, std::string_view sentence, Absent absent, const Read& read) {
+  const Json* value = find(key);
+  if (value == nullptr && absent == Absent::skip && !describing_) return;
+  ObjectReader child = child_at(key, value, absent);
+  read(child);
   record(key, child.finish());
   if (!describing_) return;
   Json schema = {{"description", sentence}};
@@ -261,28 +233,43 @@ void ObjectReader::leave(std::string_view key, std::string_view sentence, Absent
   if (absent == Absent::fault) schema_["required"].push_back(key);
 }
 
-void ObjectReader::leave_switchable(std::string_view key, const KeyText& text, bool on, ObjectReader& child) {
+bool ObjectReader::switchable(std::string_view key, const KeyText& text, const Read& read) {
+  const Json* value = find(key);
+  const bool on = value != nullptr && *value != false;
+  record(key, false);
+  if (!on && !describing_) return false;
+  ObjectReader child = child_at(key, on && *value == true ? &empty_object : value, Absent::skip);
+  read(child);
   if (on) record(key, child.finish());
-  if (!describing_) return;
   child.schema_["type"] = {"boolean", "object"};
-  declare(key, child.schema_, text, "", false, false);
+  declare(key, child.schema_, text, "", false);
+  return on;
 }
 
-const Json* ObjectReader::list_of_objects(std::string_view key, Size length) {
+void ObjectReader::objects(std::string_view key, Size length, const KeyText& text, std::string_view each,
+                           const Read& read) {
+  const std::string range = std::to_string(length.least) + " to " + std::to_string(length.most);
   const Json* list = find(key);
-  if (list == nullptr || (list->is_array() && list->size() >= length.least && list->size() <= length.most)) return list;
-  fault(key, (list->is_array() ? "has " + std::to_string(list->size()) + " entries" : quote(*list) + " is not a list") +
-                 "; give " + std::to_string(length.least) + " to " + std::to_string(length.most) + " " +
-                 std::string(key));
-  return nullptr;
-}
-
-void ObjectReader::describe_objects(std::string_view key, Size length, const KeyText& text, std::string_view each,
-                                    ObjectReader& child) {
+  Json resolved = Json::array();
+  if (list != nullptr && list->is_array() && list->size() >= length.least && list->size() <= length.most) {
+    for (std::size_t k = 0; k < list->size(); ++k) {
+      ObjectReader child((*list)[k], pointer_to(pointer(key), k), faults_);
+      read(child);
+      resolved.push_back(child.finish());
+    }
+  } else if (list != nullptr) {
+    fault(key,
+          (list->is_array() ? "has " + std::to_string(list->size()) + " entries" : quote(*list) + " is not a list") +
+              "; give " + range + " " + std::string(key));
+  }
+  record(key, std::move(resolved));
+  if (!describing_) return;
+  ObjectReader child = describing(faults_);
+  read(child);
   Json items = {{"description", each}};
   items.update(child.schema_);
   declare(key, {{"type", "array"}, {"minItems", length.least}, {"maxItems", length.most}, {"items", std::move(items)}},
-          text, std::to_string(length.least) + " to " + std::to_string(length.most) + "; ");
+          text, range + "; ");
 }
 
 void ObjectReader::exclude(std::string_view key, std::string_view other) {
@@ -313,9 +300,8 @@ Json ObjectReader::finish() {
   if (value_ != nullptr)
     for (const auto& [key, value] : value_->items())
       if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-        const std::string elsewhere = key_elsewhere(key);
-        faults_.add(pointer(key),
-                    "is not a known key" + (elsewhere.empty() ? suggestion(key, known_) : " (" + elsewhere + "?)"));
+        const std::string path = path_of_key(key);
+        faults_.add(pointer(key), "is not a known key" + (path.empty() ? suggestion(key, known_) : " (" + path + "?)"));
       }
   return std::move(resolved_);
 }

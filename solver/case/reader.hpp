@@ -3,7 +3,7 @@
 // default, the fault messages, the JSON Schema, the tables of the documents and the completion follow from that call.
 
 #include <concepts>
-#include <cstdint>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <span>
@@ -74,16 +74,16 @@ class ObjectReader {
   void optional_number(std::string_view key, std::optional<double>& value, const Quantity& q, const KeyText& text);
   template <std::integral T>
   void integer(std::string_view key, T& value, const Quantity& q, const KeyText& text) {
-    value = static_cast<T>(read_integer(key, static_cast<std::int64_t>(value), q, text).value());
+    if (const auto read = read_number(key, q, text, "integer", value)) value = static_cast<T>(*read);
+    record(key, value);
   }
   template <std::integral T>
   void optional_integer(std::string_view key, std::optional<T>& value, const Quantity& q, const KeyText& text) {
-    if (const auto read = read_integer(key, {}, q, text)) value = static_cast<T>(*read);
+    if (const auto read = read_number(key, q, text, "integer")) record(key, value.emplace(static_cast<T>(*read)));
   }
   void flag(std::string_view key, bool& value, const KeyText& text);
-  /// Counted in characters, not bytes.
+  /// Counted in characters, not bytes; it is required if the value on entry is too short.
   void string(std::string_view key, std::string& value, Size length, const KeyText& text);
-  void required_string(std::string_view key, std::string& value, Size length, const KeyText& text);
   /// A list of numbers; it is required if it cannot be empty.
   void numbers(std::string_view key, std::vector<double>& values, const Quantity& q, Size length, const KeyText& text);
   /// One of several words.
@@ -99,49 +99,22 @@ class ObjectReader {
   }
   /// @}
 
-  /// A member object, which read(ObjectReader&) reads.
-  template <class Read>
-  void object(std::string_view key, std::string_view sentence, Absent absent, Read&& read) {
-    if (absent == Absent::skip && find(key) == nullptr && !describing_) return;
-    ObjectReader child = enter(key, absent);
-    read(child);
-    leave(key, sentence, absent, child);
-  }
+  /// Reads the keys of a member object, or declares them.
+  using Read = std::function<void(ObjectReader&)>;
+  /// A member object.
+  void object(std::string_view key, std::string_view sentence, Absent absent, const Read& read);
   /// false, true (every default) or an object of its own.
   /// @return whether it is on
-  template <class Read>
-  bool switchable(std::string_view key, const KeyText& text, Read&& read) {
-    const Json* value = find(key);
-    const bool on = value != nullptr && *value != false;
-    if (!on) record(key, false);
-    if (!on && !describing_) return false;
-    ObjectReader child =
-        on && *value == true ? ObjectReader(empty_object(), pointer(key), faults_) : enter(key, Absent::skip);
-    read(child);
-    leave_switchable(key, text, on, child);
-    return on;
-  }
-  /// A list of objects, each of which read(ObjectReader&) reads; required by the caller.
-  template <class Read>
-  void objects(std::string_view key, Size length, const KeyText& text, std::string_view each, Read&& read) {
-    Json resolved = Json::array();
-    if (const Json* list = list_of_objects(key, length))
-      for (std::size_t k = 0; k < list->size(); ++k) {
-        ObjectReader child((*list)[k], pointer_to(pointer(key), k), faults_);
-        read(child);
-        resolved.push_back(child.finish());
-      }
-    record(key, std::move(resolved));
-    if (!describing_) return;
-    ObjectReader child = describing(faults_);
-    read(child);
-    describe_objects(key, length, text, each, child);
-  }
+  bool switchable(std::string_view key, const KeyText& text, const Read& read);
+  /// A list of objects; required by the caller.
+  /// @param each  the sentence on one of them
+  void objects(std::string_view key, Size length, const KeyText& text, std::string_view each, const Read& read);
 
   /// The value of a key, or null if it is absent; the key counts as known.
   const Json* find(std::string_view key);
-  /// Declares a key whose value the caller reads.
-  void declare(std::string_view key, Json schema, const KeyText& text, const std::string& facts);
+  /// Declares a key whose value the caller reads. @param fallback  its default, null when there is none
+  void declare(std::string_view key, const Json& schema, const KeyText& text, const std::string& facts,
+               const Json& fallback = nullptr, bool required = false);
   /// A fault if both keys are given.
   void exclude(std::string_view key, std::string_view other);
   /// Declares that exactly one form is given; the caller checks it and words the faults.
@@ -165,21 +138,10 @@ class ObjectReader {
  private:
   ObjectReader(std::string pointer, Faults& faults, bool describing)
       : value_(nullptr), pointer_(std::move(pointer)), faults_(faults), describing_(describing) {}
-  static const Json& empty_object();
-  ObjectReader enter(std::string_view key, Absent absent);
-  void leave(std::string_view key, std::string_view sentence, Absent absent, ObjectReader& child);
-  void leave_switchable(std::string_view key, const KeyText& text, bool on, ObjectReader& child);
-  const Json* list_of_objects(std::string_view key, Size length);
-  void describe_objects(std::string_view key, Size length, const KeyText& text, std::string_view each,
-                        ObjectReader& child);
-  /// Declares a key; `fallback` is its default, null when there is none.
-  void declare(std::string_view key, Json schema, const KeyText& text, const std::string& facts, const Json& fallback,
-               bool required);
-  std::optional<double> read_number(std::string_view key, const Quantity& q);
-  std::optional<double> read_whole(std::string_view key, const Quantity& q);
-  std::optional<std::int64_t> read_integer(std::string_view key, std::optional<std::int64_t> fallback,
-                                           const Quantity& q, const KeyText& text);
-  void read_string(std::string_view key, std::string& value, Size length, const KeyText& text, bool required);
+  ObjectReader child_at(std::string_view key, const Json* value, Absent absent);
+  std::optional<double> read_number(std::string_view key, const Quantity& q, const KeyText& text,
+                                    std::string_view type = "number", const Json& fallback = nullptr,
+                                    bool required = false);
   std::size_t pick(std::string_view key, std::span<const std::string> words, std::size_t fallback, const KeyText& text);
 
   const Json* value_;  ///< null: every read returns its default

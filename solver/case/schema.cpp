@@ -40,7 +40,7 @@ std::vector<CaseKey> case_keys() {
   return keys;
 }
 
-std::string key_elsewhere(std::string_view name) {
+std::string path_of_key(std::string_view name) {
   if (name.empty()) return "";
   for (const CaseKey& key : case_keys())
     if (key.path.ends_with("." + std::string(name))) return key.path;

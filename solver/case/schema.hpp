@@ -22,7 +22,7 @@ struct CaseKey {
 /// Every key that holds a value, in the order of the schema.
 std::vector<CaseKey> case_keys();
 
-/// The path of a key of this name in another section, "" when there is none: "material.cohesion_Pa".
-std::string key_elsewhere(std::string_view name);
+/// The path of the first key of this name that stands in a section, "" when there is none: "material.cohesion_Pa".
+std::string path_of_key(std::string_view name);
 
 }  // namespace talus

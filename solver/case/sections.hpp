@@ -5,11 +5,16 @@
 #include <filesystem>
 #include <vector>
 
-#include "case/case.hpp"
-#include "case/checks.hpp"
+#include "case/load.hpp"
 #include "case/vertices.hpp"
 
 namespace talus {
+
+/// Where the vertices of bed and outlines are written.
+struct SourceLocations {
+  Vertices bed;
+  std::vector<Vertices> outlines;  ///< of each slide part
+};
 
 /// The whole case.
 /// @param directory  where CSV files lie
@@ -25,7 +30,7 @@ struct MaterialInput : Material {
 void read_material(ObjectReader& in, MaterialInput& m);
 void read_rheology(ObjectReader& in, Rheology& r);
 void read_numerics(ObjectReader& in, Numerics& n);
-void read_walls(ObjectReader& in, Walls& w);
+void read_walls(ObjectReader& in, Walls& w, Boundary& bed);
 void read_time(ObjectReader& in, TimeControl& t);
 
 // read_geometry.cpp
@@ -44,5 +49,13 @@ void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& dir
 // read_statistics.cpp
 void read_field(ObjectReader& in, FieldSpec& spec);
 void read_study(ObjectReader& in, StudySpec& s);
+
+// checks.cpp: whether slide, bed, walls and field fit one another
+/// Slide parts apart from one another, above the bed, between its ends; as many particles as allowed.
+void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults);
+/// Enough wall layers, friction where a field needs it, given coefficients as many as the field takes.
+void check_choices(const Case& c, Faults& faults);
+/// Legal input that is often a mistake: an open end within reach, a wall lower than the slide, a coarse time step.
+std::vector<Fault> find_warnings(const Case& c);
 
 }  // namespace talus

@@ -6,26 +6,16 @@
 namespace talus {
 namespace {
 
-/// One line of data, or nothing and a fault.
-std::optional<Vec2> read_line(const std::vector<std::string>& fields, const std::string& place, Faults& faults) {
-  if (fields.size() != 2) {
-    faults.add(place, "has " + std::to_string(fields.size()) + " columns, expected 2: x, y in metres");
-    return {};
-  }
-  std::optional<double> xy[2];
-  for (int k = 0; k < 2; ++k) {
-    const std::string& field = fields[static_cast<std::size_t>(k)];
-    xy[k] = to_number(field);
-    const bool decimal_comma = field.find(',') != std::string::npos;
-    if (!xy[k])
-      faults.add(place, in_quotes(field) + " is not a number" + (decimal_comma ? "; write a decimal point" : ""));
-    else if (!coordinate.allows(*xy[k]))
-      faults.add(place, shorten(field) + " is out of range; " + coordinate.describe());
-    else
-      continue;
-    return {};
-  }
-  return Vec2{*xy[0] + 0.0, *xy[1] + 0.0};
+/// A coordinate of a CSV file, or nothing and a fault.
+std::optional<double> read_coordinate(const std::string& field, const std::string& location, Faults& faults) {
+  const std::optional<double> x = to_number(field);
+  if (x && coordinate.allows(*x)) return *x + 0.0;  // -0 becomes 0
+  if (x)
+    faults.add(location, shorten(field) + " is out of range; " + coordinate.describe());
+  else
+    faults.add(location, in_quotes(field) + " is not a number" +
+                             (field.find(',') == std::string::npos ? "" : "; write a decimal point"));
+  return {};
 }
 
 Vertices read_inline(const Json& value, const std::string& pointer, Faults& faults) {
@@ -49,7 +39,7 @@ Vertices read_inline(const Json& value, const std::string& pointer, Faults& faul
   return out;
 }
 
-/// The text of a CSV beside the case; a name that leads elsewhere is refused before any file is touched.
+/// The text of a CSV beside the case; a name with a directory is refused before a file is opened.
 std::optional<std::string> csv_text(const Json& value, const std::string& pointer,
                                     const std::filesystem::path& directory, Faults& faults) {
   const std::string* name = value.get_ptr<const std::string*>();
@@ -85,7 +75,7 @@ void declare_vertices(ObjectReader& in, const std::string& inline_key, const std
 
 }  // namespace
 
-std::string Vertices::place(std::size_t k) const {
+std::string Vertices::location(std::size_t k) const {
   return lines.empty() ? pointer_to(source, k) : source + ":" + std::to_string(lines[k]);
 }
 
@@ -95,10 +85,16 @@ Vertices read_csv(std::string_view text, const std::string& name, Faults& faults
   for (bool first = true; rows.next() && out.points.size() <= most_vertices; first = false) {
     const std::vector<std::string>& fields = rows.fields();
     if (first && fields.size() == 2 && !to_number(fields[0]) && !to_number(fields[1])) continue;  // the header
-    if (const auto point = read_line(fields, name + ":" + std::to_string(rows.line()), faults)) {
-      out.points.push_back(*point);
-      out.lines.push_back(rows.line());
+    const std::string location = name + ":" + std::to_string(rows.line());
+    if (fields.size() != 2) {
+      faults.add(location, "has " + std::to_string(fields.size()) + " columns, expected 2: x, y in metres");
+      continue;
     }
+    const auto x = read_coordinate(fields[0], location, faults);
+    const auto y = x ? read_coordinate(fields[1], location, faults) : std::nullopt;
+    if (!y) continue;
+    out.points.push_back({*x, *y});
+    out.lines.push_back(rows.line());
   }
   if (out.points.size() > most_vertices)
     faults.add(name, "has more than " + std::to_string(most_vertices) + " vertices");

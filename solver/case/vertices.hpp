@@ -24,7 +24,7 @@ struct Vertices {
 
   bool empty() const { return points.empty(); }
   /// "/terrain/bed_m/3", or "bed.csv:5"
-  std::string place(std::size_t k) const;
+  std::string location(std::size_t k) const;
 };
 
 /// Declares and reads `KEY_m` or `KEY_csv`, whichever is there.

@@ -1,7 +1,6 @@
 // talus field: the friction angle of one realization, as numbers or as a picture, without running it.
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
@@ -44,7 +43,7 @@ FieldOnParticles field_on(const Case& problem, const RunIdentity& identity) {
   FieldOnParticles field{
       .position = {}, .phi_deg = {}, .strength = strength(problem.model, problem.field, problem.study, plan, identity)};
   for (const SoilPoint& point : plan.soil) field.position.push_back(point.x);
-  for (const double tan_phi : field.strength.properties.tan_phi) field.phi_deg.push_back(degrees(std::atan(tan_phi)));
+  for (const double tan_phi : field.strength.properties.tan_phi) field.phi_deg.push_back(friction_angle_deg(tan_phi));
   return field;
 }
 
@@ -99,7 +98,7 @@ void write(const FieldOnParticles& field, const Model& model, const figures::Sta
   frame.position = field.position;
   frame.tan_phi = tan_phi;
   const figures::Snapshot shot{&frame, figures::Colour::friction_angle, "Before the slide"};
-  figures::plot_sequence({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
+  figures::plot_profiles({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
 }
 
 Exit field(const FieldOptions& options) {

@@ -216,7 +216,9 @@ CLI::App* add_verb(CLI::App& app, Action& action, const char* name, const char* 
 }  // namespace
 
 void add_remote(CLI::App& app, Action& action) {
-  const auto options = std::make_shared<RemoteOptions>();
+  // One for each verb, since TALUS_SERVER is read for all of them, whichever is chosen.
+  const auto make = [] { return std::make_shared<RemoteOptions>(); };
+  auto options = make();
   CLI::App* verb =
       add_verb(app, action, "submit", "Submit a study to a talusd server; prints the job ID", options, submit);
   verb->add_option("CASE", options->case_file, "Case file (JSON); the CSV files it names are sent along")->required();
@@ -228,16 +230,20 @@ void add_remote(CLI::App& app, Action& action) {
   verb->add_flag("--watch", options->watch, "Wait until the job has ended");
   set_footer(*verb, {exit_text::bad_case, exit_text::io, exit_text::dismissed, exit_text::failed},
              {"submit slope.json --realizations 500 --watch"});
+  options = make();
   verb = add_verb(app, action, "status", "Show job status (all jobs if no ID is given)", options, status);
   verb->add_option("JOB", options->job, "Job ID");
   set_footer(*verb, {exit_text::io}, {"status", "status JOB --json"});
+  options = make();
   verb = add_verb(app, action, "watch", "Follow a job until it has ended", options, watch);
   verb->add_option("JOB", options->job, "Job ID")->required();
   set_footer(*verb, {exit_text::io, exit_text::dismissed, exit_text::failed}, {"watch JOB"});
+  options = make();
   verb = add_verb(app, action, "results", "Show or save the results of a job", options, results);
   verb->add_option("JOB", options->job, "Job ID")->required();
   verb->add_option("--out", options->out, "Output file (JSON)")->type_name("FILE");
   set_footer(*verb, {exit_text::io}, {"results JOB", "results JOB --out study.json"});
+  options = make();
   verb = add_verb(app, action, "cancel", "Cancel a job and delete its files", options, cancel);
   verb->add_option("JOB", options->job, "Job ID")->required();
   set_footer(*verb, {exit_text::io}, {"cancel JOB"});

@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "case/load.hpp"
-#include "case/study_plan.hpp"
 #include "cli/help.hpp"
 #include "cli/progress.hpp"
 #include "cli/signals.hpp"

@@ -3,18 +3,14 @@
 
 #include <span>
 
-#include "figures/canvas.hpp"
+#include "figures/sheet.hpp"
 #include "figures/study_files.hpp"
 #include "particles/geometry_input.hpp"
 
 namespace talus::figures {
 
-// Sheet and frame of the charts with one panel [px].
-inline constexpr Canvas chart_canvas{900, 576};
-inline constexpr Panel chart_panel{84, 872, 84, 488};
-
-/// Histogram of the influence zone; beneath it, on the same scale, the interval of the mean, the spread and the
-/// numerical noise floor.
+/// Histogram of the run-out distance; beneath it, on the same scale, the interval of the mean, the standard deviation
+/// and the numerical noise.
 Sheet histogram_sheet(const StudyFiles& study);
 
 /// Probability that a run reaches farther than x, with Wilson's 95 % band.
@@ -26,19 +22,19 @@ Sheet running_mean_sheet(const StudyFiles& study);
 /// Probability that the front reaches x, above the terrain with the slide before its release.
 Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std::span<const SlidePart> slide);
 
-/// Influence zone against the spatial mean of the friction angle, one point a realization.
+/// Run-out distance against the spatial mean of the friction angle, one point a realization.
 Sheet friction_angle_sheet(const StudyFiles& study);
 
-/// Standard deviation of every measure beside its numerical noise floor.
+/// Standard deviation of every measure beside its numerical noise.
 Sheet spread_sheet(const StudyFiles& study);
+
+/// An empty chart: the study's title, `subtitle`, its source and its number of realizations.
+Sheet chart(const StudyFiles& study, std::string_view subtitle, const Canvas& canvas = {900, 576});
 
 /// "200 realizations" or "198 of 200 realizations done, 2 failed".
 std::string count_text(const StudyFiles& study);
 
-/// "34.12 [33.98, 34.26] m", as far as known.
+/// "34.12 [33.98, 34.26] m"; "unknown", or without the interval, where the sample is too small.
 std::string interval_text(const std::optional<double>& value, const std::optional<Interval>& interval);
-
-/// Stamps of a chart: the study's title, `subtitle`, its source.
-Stamps chart_stamps(const StudyFiles& study, std::string subtitle);
 
 }  // namespace talus::figures

@@ -2,59 +2,50 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
-#include "figures/canvas.hpp"
+#include "figures/sheet.hpp"
 #include "math/angle.hpp"
 
 namespace talus::figures {
 
-const Palette& palette_of(Colour colour) {
-  switch (colour) {
-    case Colour::speed:
-      return plasma;
-    case Colour::friction_angle:
-      return viridis;
-    case Colour::displacement:
-      return magma;
-    case Colour::pressure:
-      return cividis;
+std::string palette_command(const Palette& palette) {
+  std::string command = "set palette defined (";
+  for (std::size_t i = 0; i < palette.size(); ++i) {
+    char stop[32];
+    std::snprintf(stop, sizeof stop, "%s%.1f '#%06x'", i == 0 ? "" : ", ", 0.1 * static_cast<double>(i), palette[i]);
+    command += stop;
   }
-  return viridis;
+  return command + ")";
 }
 
-std::string colour_name(Colour colour) {
-  switch (colour) {
-    case Colour::speed:
-      return "speed (m/s)";
-    case Colour::friction_angle:
-      return "friction angle (°)";
-    case Colour::displacement:
-      return "displacement (m)";
-    case Colour::pressure:
-      return "pressure (kPa)";
+std::uint32_t colour_at(const Palette& palette, double t) {
+  const double at = std::clamp(t, 0.0, 1.0) * static_cast<double>(palette.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(at), palette.size() - 2);
+  const double share = at - static_cast<double>(below);
+  std::uint32_t rgb = 0;
+  for (int shift = 16; shift >= 0; shift -= 8) {
+    const double a = (palette[below] >> shift) & 0xff;
+    const double b = (palette[below + 1] >> shift) & 0xff;
+    rgb |= static_cast<std::uint32_t>(std::lround(a + share * (b - a))) << shift;
   }
-  return {};
+  return rgb;
 }
 
-double colour_value(const Frame& frame, std::size_t i, Colour colour) {
-  switch (colour) {
-    case Colour::speed:
-      return norm(frame.velocity[i]);
-    case Colour::friction_angle:
-      return degrees(std::atan(frame.tan_phi[i]));
-    case Colour::displacement:
-      return norm(frame.displacement[i]);
-    case Colour::pressure:
-      return frame.pressure[i] / 1000.0;
-  }
-  return 0.0;
+const ColourScale& scale_of(Colour colour) {
+  static constexpr ColourScale scales[] = {
+      {"speed (m/s)", &plasma, [](const Frame& f, std::size_t i) { return norm(f.velocity[i]); }},
+      {"friction angle (°)", &viridis, [](const Frame& f, std::size_t i) { return friction_angle_deg(f.tan_phi[i]); }},
+      {"displacement (m)", &magma, [](const Frame& f, std::size_t i) { return norm(f.displacement[i]); }},
+      {"pressure (kPa)", &cividis, [](const Frame& f, std::size_t i) { return f.pressure[i] / 1000.0; }}};
+  return scales[static_cast<int>(colour)];
 }
 
 ColourRange value_range(std::span<const Frame* const> frames, Colour colour) {
   ColourRange range{colour == Colour::friction_angle ? 90.0 : 0.0, 0.0};
   for (const Frame* frame : frames) {
     for (std::size_t i = 0; i < frame->n_soil; ++i) {
-      const double value = colour_value(*frame, i, colour);
+      const double value = scale_of(colour).value(*frame, i);
       range.lo = std::min(range.lo, value);
       range.hi = std::max(range.hi, value);
     }

@@ -1,24 +1,54 @@
 #pragma once
-// The quantities that colour the soil: name, value, palette, range.
+// Colours that keep their order in grey and for colour-blind eyes, and the quantities that colour the soil.
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 
-#include "figures/palette.hpp"
 #include "simulation/frame.hpp"
 
 namespace talus::figures {
 
+/// Eleven colours at 0, 0.1 .. 1, linear between, as 0xRRGGBB.
+using Palette = std::array<std::uint32_t, 11>;
+
+/// The colour maps viridis, plasma, magma and cividis of matplotlib (CC0, S. van der Walt, N. Smith; cividis: Nunez et
+/// al. 2018, doi:10.1371/journal.pone.0199239), every tenth of their range. Perceptually uniform, lightness rises
+/// throughout.
+inline constexpr Palette viridis{0x440154, 0x482475, 0x414487, 0x355f8d, 0x2a788e, 0x21918c,
+                                 0x22a884, 0x44bf70, 0x7ad151, 0xbddf26, 0xfde725};
+inline constexpr Palette plasma{0x0d0887, 0x41049d, 0x6a00a8, 0x8f0da4, 0xb12a90, 0xcc4778,
+                                0xe16462, 0xf2844b, 0xfca636, 0xfcce25, 0xf0f921};
+inline constexpr Palette magma{0x000004, 0x140e36, 0x3b0f70, 0x641a80, 0x8c2981, 0xb73779,
+                               0xde4968, 0xf7705c, 0xfe9f6d, 0xfecf92, 0xfcfdbf};
+inline constexpr Palette cividis{0x00224e, 0x083370, 0x35456c, 0x4f576c, 0x666970, 0x7d7c78,
+                                 0x948e77, 0xaea371, 0xc8b866, 0xe5cf52, 0xfee838};
+
+/// Colours of lines, from the set of Okabe and Ito (2008), which colour-blind eyes tell apart.
+inline constexpr const char* blue = "#0072B2";
+inline constexpr const char* vermillion = "#D55E00";
+inline constexpr const char* ink = "#262626";    ///< text, axes, ground line
+inline constexpr const char* faint = "#767676";  ///< second-rank text
+inline constexpr const char* grid = "#E3E3E3";
+inline constexpr const char* ground = "#E9E3D6";  ///< what lies beneath the bed
+
+/// gnuplot's `set palette` command for the palette.
+std::string palette_command(const Palette& palette);
+
+/// Colour at t in [0, 1] (clamped), as 0xRRGGBB.
+std::uint32_t colour_at(const Palette& palette, double t);
+
 /// What the particles are coloured by.
 enum class Colour { speed, friction_angle, displacement, pressure };
 
-/// "friction angle (°)" and so on, as it stands beside the colour bar.
-std::string colour_name(Colour colour);
-/// The quantity of one particle in the unit of the picture: m/s, degrees, m, kPa.
-double colour_value(const Frame& frame, std::size_t i, Colour colour);
-
-/// Each quantity has its own palette.
-const Palette& palette_of(Colour colour);
+/// How a quantity is shown.
+struct ColourScale {
+  const char* name;  ///< "friction angle (°)" and so on, as it stands beside the colour bar
+  const Palette* palette;
+  double (*value)(const Frame& frame, std::size_t i);  ///< of one particle, in the unit of the name
+};
+const ColourScale& scale_of(Colour colour);
 
 /// Span of the colour bar, in the unit of the picture.
 struct ColourRange {

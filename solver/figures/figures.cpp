@@ -37,7 +37,7 @@ class Album {
   void add(const std::string& name, std::span<const Snapshot> snapshots, const Model& model, const Stamps& stamps,
            const ProfileOptions& options = {}) {
     for (const char* ending : {".svg", ".png"}) {
-      plot_sequence(snapshots, model.terrain, model.dx, drawn_.emplace_back(directory_ / (name + ending)), stamps,
+      plot_profiles(snapshots, model.terrain, model.dx, drawn_.emplace_back(directory_ / (name + ending)), stamps,
                     options);
     }
   }
@@ -72,10 +72,10 @@ void draw_motion(Album& album, const fs::path& file, const std::string& suffix, 
   for (const Frame& frame : frames) speed.push_back({&frame, Colour::speed, {}});
   stamps.subtitle = whose + speed_words;
   album.add("speed" + suffix, speed, model, stamps);
-  std::vector<Snapshot> strength{{&frames.front(), Colour::friction_angle, {}}};
-  if (frames.size() > 1) strength.push_back({&frames.back(), Colour::friction_angle, {}});
+  std::vector<Snapshot> friction_angle{{&frames.front(), Colour::friction_angle, {}}};
+  if (frames.size() > 1) friction_angle.push_back({&frames.back(), Colour::friction_angle, {}});
   stamps.subtitle = whose + "Friction angle (carried by the particles)";
-  album.add("friction_angle" + suffix, strength, model, stamps);
+  album.add("friction_angle" + suffix, friction_angle, model, stamps);
 }
 
 LoadedCase resolved_case(const fs::path& directory) {
@@ -110,8 +110,8 @@ void draw_snapshots(Album& album, const fs::path& file, const Model& model, Stam
     const Frame frame = read_frame(file, k);
     const std::array<const Frame*, 1> one{&frame};
     const Box box = view_of(one, model.terrain, model.dx);
-    view = {{std::min(view.lo.x, box.lo.x), std::min(view.lo.y, box.lo.y)},
-            {std::max(view.hi.x, box.hi.x), std::max(view.hi.y, box.hi.y)}};
+    view.include(box.lo);
+    view.include(box.hi);
     range.hi = std::max(range.hi, value_range(one, Colour::speed).hi);
   }
   for (std::size_t k = 0; k < n; ++k) {

@@ -1,4 +1,4 @@
-#include "figures/gnuplot.hpp"
+// Runs gnuplot: script on its stdin, picture on its stdout.
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
-#include <vector>
 
+#include "figures/sheet.hpp"
 #include "support/error.hpp"
 
 extern char** environ;
@@ -17,25 +17,16 @@ extern char** environ;
 namespace talus::figures {
 namespace {
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, CloseFile>;
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 [[noreturn]] void fail(const std::string& what, int error) { throw IoError(what + ": " + std::strerror(error)); }
 
 // A nameless file instead of a pipe: gnuplot may stop reading whenever it likes, and neither side can block the other.
-File nameless_file() {
-  File file(std::tmpfile());
+File nameless_file(const std::string& content = {}) {
+  File file(std::tmpfile(), std::fclose);
   if (!file) fail("cannot make a temporary file for gnuplot", errno);
-  return file;
-}
-
-File script_file(const std::string& script) {
-  File file = nameless_file();
-  if (std::fwrite(script.data(), 1, script.size(), file.get()) != script.size() || std::fflush(file.get()) != 0) {
+  if (std::fwrite(content.data(), 1, content.size(), file.get()) != content.size() || std::fflush(file.get()) != 0)
     fail("cannot write the script for gnuplot", errno);
-  }
   std::rewind(file.get());
   return file;
 }
@@ -48,58 +39,28 @@ std::string contents(std::FILE* file) {
   return text;
 }
 
-class FileActions {
- public:
-  FileActions() { ::posix_spawn_file_actions_init(&actions_); }
-  ~FileActions() { ::posix_spawn_file_actions_destroy(&actions_); }
-  FileActions(const FileActions&) = delete;
-  FileActions& operator=(const FileActions&) = delete;
-  void redirect(int from, int to) { ::posix_spawn_file_actions_adddup2(&actions_, to, from); }
-  const posix_spawn_file_actions_t* get() const { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_;
-};
-
-/// Ours, but for a language whose letters are those of the scripts: gnuplot 6 warns of a degree sign in the plain C
-/// locale.
-std::vector<char*> environment_of_gnuplot() {
-  static char letters[] = "LC_ALL=C.UTF-8";
-  std::vector<char*> variables = {letters};
-  for (char** variable = environ; *variable != nullptr; ++variable)
-    if (std::strncmp(*variable, "LC_ALL=", 7) != 0) variables.push_back(*variable);
-  variables.push_back(nullptr);
-  return variables;
-}
-
-// Exit status of gnuplot as waitpid gives it.
-int spawn_gnuplot(int in, int out, int err) {
-  FileActions actions;
-  actions.redirect(STDIN_FILENO, in);
-  actions.redirect(STDOUT_FILENO, out);
-  actions.redirect(STDERR_FILENO, err);
-  char program[] = "gnuplot";
-  char no_start_up_file[] = "--default-settings";
-  char* arguments[] = {program, no_start_up_file, nullptr};
-  pid_t child = 0;
-  const int error = ::posix_spawnp(&child, program, actions.get(), nullptr, arguments, environment_of_gnuplot().data());
-  if (error == ENOENT || error == EACCES)
-    throw IoError("gnuplot not found, so no figures were drawn; install gnuplot-nox");
-  if (error != 0) fail("cannot start gnuplot", error);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) fail("cannot wait for gnuplot", errno);
-  }
-  return status;
-}
-
 }  // namespace
 
 GnuplotOutput run_gnuplot(const std::string& script) {
-  const File in = script_file(script);
-  const File out = nameless_file();
-  const File err = nameless_file();
-  const int status = spawn_gnuplot(::fileno(in.get()), ::fileno(out.get()), ::fileno(err.get()));
+  const File in = nameless_file(script), out = nameless_file(), err = nameless_file();
+  posix_spawn_file_actions_t redirections;
+  ::posix_spawn_file_actions_init(&redirections);
+  ::posix_spawn_file_actions_adddup2(&redirections, ::fileno(in.get()), STDIN_FILENO);
+  ::posix_spawn_file_actions_adddup2(&redirections, ::fileno(out.get()), STDOUT_FILENO);
+  ::posix_spawn_file_actions_adddup2(&redirections, ::fileno(err.get()), STDERR_FILENO);
+  // gnuplot 6 warns of a degree sign in the plain C locale.
+  const char* arguments[] = {"env", "LC_ALL=C.UTF-8", "gnuplot", "--default-settings", nullptr};
+  pid_t child = 0;
+  const int error =
+      ::posix_spawnp(&child, arguments[0], &redirections, nullptr, const_cast<char**>(arguments), environ);
+  ::posix_spawn_file_actions_destroy(&redirections);
+  if (error != 0 && error != ENOENT) fail("cannot start gnuplot", error);
+  int status = 0;
+  while (error == 0 && ::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) fail("cannot wait for gnuplot", errno);
+  constexpr int not_found = 127;  // env's exit status
+  if (error == ENOENT || (WIFEXITED(status) && WEXITSTATUS(status) == not_found))
+    throw IoError("gnuplot not found, so no figures were drawn; install gnuplot-nox");
   GnuplotOutput output{contents(out.get()), contents(err.get())};
   if (status != 0) throw IoError("gnuplot failed: " + output.warnings);
   return output;

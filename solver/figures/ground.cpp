@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "figures/palette.hpp"
+#include "figures/colour.hpp"
 
 namespace talus::figures {
 namespace {
@@ -39,15 +39,6 @@ std::vector<Vec2> boundary(const Terrain& terrain, double lo, double hi) {
   return line;
 }
 
-double bed_height(const Terrain& terrain, double x) {
-  const auto& bed = terrain.bed;
-  if (x <= bed.front().x) return bed.front().y;
-  for (std::size_t i = 0; i + 1 < bed.size(); ++i) {
-    if (x <= bed[i + 1].x) return at_x(bed[i], bed[i + 1], x).y;
-  }
-  return bed.back().y;
-}
-
 std::vector<Stroke> hatching(const std::vector<Vec2>& line, double spacing, double length) {
   std::vector<Stroke> strokes;
   double next = spacing;  // distance from the start of the segment to the next stroke
@@ -66,21 +57,20 @@ std::vector<Stroke> hatching(const std::vector<Vec2>& line, double spacing, doub
 
 GroundElements ground_elements(Script& script, const Terrain& terrain, const Box& view, double metre,
                                const std::string& tag) {
-  const std::vector<Vec2> line = boundary(terrain, view.lo.x, view.hi.x);
-  if (line.size() < 2) return {};
+  const std::vector<Vec2> line_of_ground = boundary(terrain, view.lo.x, view.hi.x);
+  if (line_of_ground.size() < 2) return {};
   GroundElements elements;
   if (!terrain.closed) {
     script.data("fill" + tag, clipped(terrain.bed, view.lo.x, view.hi.x));
-    elements.behind = "$fill" + tag + " using 1:2 with filledcurves y1=" + number(view.lo.y) + " fillcolor rgb '" +
-                      ground + "', \\\n  ";
+    elements.behind.push_back("$fill" + tag + " using 1:2 with filledcurves y1=" + number(view.lo.y) +
+                              " fillcolor rgb '" + ground + "'");
   }
   std::vector<std::array<double, 4>> rows;
-  for (const Stroke& s : hatching(line, 9 / metre, 8 / metre))
+  for (const Stroke& s : hatching(line_of_ground, 9 / metre, 8 / metre))
     rows.push_back({s.from.x, s.from.y, s.along.x, s.along.y});
-  script.data("line" + tag, line).data("hatch" + tag, rows);
-  elements.front = "$hatch" + tag + " using 1:2:3:4 with vectors nohead linewidth 0.6 linecolor rgb '" +
-                   std::string(faint) + "', \\\n  $line" + tag + " using 1:2 with lines linewidth 2.2 linecolor rgb '" +
-                   ink + "', \\\n  ";
+  script.data("line" + tag, line_of_ground).data("hatch" + tag, rows);
+  elements.front = {"$hatch" + tag + " using 1:2:3:4 with vectors nohead linewidth 0.6 linecolor rgb '" + faint + "'",
+                    line("line" + tag, ink, 2.2)};
   return elements;
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "figures/script.hpp"
+#include "figures/sheet.hpp"
 #include "particles/geometry_input.hpp"
 
 namespace talus::figures {
@@ -14,9 +14,6 @@ std::vector<Vec2> clipped(const std::vector<Vec2>& line, double lo, double hi);
 /// The boundary as one line with the soil on its left: end walls and bed, or the whole ring. [m]
 std::vector<Vec2> boundary(const Terrain& terrain, double lo, double hi);
 
-/// Height of an open bed at x, of its nearer end beyond it. [m]
-double bed_height(const Terrain& terrain, double x);
-
 /// A short stroke behind the boundary, as geotechnical drawings mark ground.
 struct Stroke {
   Vec2 from;   ///< on the line [m]
@@ -26,12 +23,13 @@ struct Stroke {
 /// Strokes every `spacing` along `line`, of length `length`, on its right side and leaning back by 45 degrees.
 std::vector<Stroke> hatching(const std::vector<Vec2>& line, double spacing, double length);
 
-/// Data and plot elements of the ground within `view`; `metre` is px per metre. Each element ends with ", \".
-/// Datablocks are named with `tag` so that several panels can live in one script.
+/// Plot elements of the ground, and the data of them in the script.
 struct GroundElements {
-  std::string behind;  ///< fill, to be plotted before the soil
-  std::string front;   ///< line and hatching, after it
+  std::vector<std::string> behind;  ///< fill, to be plotted before the soil
+  std::vector<std::string> front;   ///< line and hatching, after it
 };
+/// The ground within `view`; `metre` is px per metre. Datablocks are named with `tag` so that several panels can live
+/// in one script.
 GroundElements ground_elements(Script& script, const Terrain& terrain, const Box& view, double metre,
                                const std::string& tag);
 

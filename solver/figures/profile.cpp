@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "case/outline.hpp"
 #include "figures/ground.hpp"
-#include "figures/layout.hpp"
 #include "figures/raster.hpp"
 
 namespace talus::figures {
@@ -16,17 +16,18 @@ constexpr std::size_t many = 200'000;  // particles that are faster drawn as an 
 constexpr double disk_radius =
     std::numbers::sqrt2 / 2;  // of dx: the circle around a particle's square, so that no holes show at rest
 
-// Index of the farthest soil particle.
-std::size_t farthest(const Frame& frame) {
-  std::size_t far = 0;
-  for (std::size_t i = 1; i < frame.n_soil; ++i) {
-    if (frame.position[i].x > frame.position[far].x) far = i;
-  }
-  return far;
-}
+// The layout of a sheet [px].
+constexpr double header = 68;        // px: title and subtitle
+constexpr double footer = 34;        // px: source line
+constexpr double left = 62;          // px: y tics and label of each panel
+constexpr double right = 24;         // px
+constexpr double beneath = 46;       // px: x tics and label of each panel
+constexpr double tallest = 440;      // px, of one panel
+constexpr double narrowest = 760;    // px, so that title and colour bar find room
+constexpr double tall_sheet = 1250;  // px: more columns rather than a taller sheet
 
 struct Drawing {
-  Script& script;
+  Sheet& sheet;
   const Layout& layout;
   const Terrain& terrain;
   double dx;
@@ -34,69 +35,58 @@ struct Drawing {
   bool raster;
 };
 
-// Plot element of the soil, with the bytes that must follow the plot command.
-struct SoilElement {
-  std::string element;
+// Plot elements of the soil, with the bytes that must follow the plot command.
+struct SoilElements {
+  std::vector<std::string> elements;
   std::string bytes;
 };
 
-SoilElement soil_image(const Drawing& d, const Snapshot& shot, ColourRange range) {
+SoilElements soil_image(const Drawing& d, const Snapshot& shot, ColourRange range) {
+  const ColourScale& scale = scale_of(shot.colour);
   std::vector<Disk> disks;
   for (std::size_t i = 0; i < shot.frame->n_soil; ++i) {
-    const double t = (colour_value(*shot.frame, i, shot.colour) - range.lo) / (range.hi - range.lo);
-    disks.push_back({shot.frame->position[i], colour_at(palette_of(shot.colour), t)});
+    const double t = (scale.value(*shot.frame, i) - range.lo) / (range.hi - range.lo);
+    disks.push_back({shot.frame->position[i], colour_at(*scale.palette, t)});
   }
   Image image = disk_image(disks, disk_radius * d.dx, std::max(0.5 / d.layout.metre, d.dx / 6));
-  Script element;
-  // The second element draws nothing: it only brings the colour bar.
-  element("'-' binary array=(", image.columns, ",", image.rows, ") format='%uchar%uchar%uchar%uchar' origin=(",
-          image.first.x, ",", image.first.y, ") dx=", image.pixel, " dy=", image.pixel,
-          " using 1:2:3:4 with rgbalpha, \\");
-  element("  '+' using (", d.view.lo.x, "):(NaN):(", range.lo, ") with points palette, \\");
-  return {element.text() + "  ", std::move(image.rgba)};
+  const std::string pixel = number(image.pixel);
+  // The second element draws no point; the colour bar needs it.
+  return {{"'-' binary array=(" + std::to_string(image.columns) + "," + std::to_string(image.rows) +
+               ") format='%uchar%uchar%uchar%uchar' origin=(" + number(image.first.x) + "," + number(image.first.y) +
+               ") dx=" + pixel + " dy=" + pixel + " using 1:2:3:4 with rgbalpha",
+           "'+' using (" + number(d.view.lo.x) + "):(NaN):(" + number(range.lo) + ") with points palette"},
+          std::move(image.rgba)};
 }
 
-SoilElement soil_disks(const Drawing& d, const Snapshot& shot, const std::string& tag) {
+SoilElements soil_disks(const Drawing& d, const Snapshot& shot, const std::string& tag) {
   const Frame& frame = *shot.frame;
   std::vector<std::array<double, 3>> rows;
-  for (std::size_t i = 0; i < frame.n_soil; ++i) {
-    rows.push_back({frame.position[i].x, frame.position[i].y, colour_value(frame, i, shot.colour)});
-  }
-  d.script.data("soil" + tag, rows);
-  return {"$soil" + tag + " using 1:2:(" + number(disk_radius * d.dx) +
-              "):3 with circles fillstyle solid noborder linecolor palette, \\\n  ",
+  for (std::size_t i = 0; i < frame.n_soil; ++i)
+    rows.push_back({frame.position[i].x, frame.position[i].y, scale_of(shot.colour).value(frame, i)});
+  d.sheet.script.data("soil" + tag, rows);
+  return {{"$soil" + tag + " using 1:2:(" + number(disk_radius * d.dx) +
+           "):3 with circles fillstyle solid noborder linecolor palette"},
           {}};
 }
 
 // A dashed line at the farthest particle, up to just above the soil there.
 std::string front_element(const Drawing& d, const Frame& frame, const std::string& tag) {
-  const Vec2 front = frame.position[farthest(frame)];
+  const std::span<const Vec2> soil = std::span(frame.position).first(frame.n_soil);
+  const Vec2 front = *std::ranges::max_element(soil, {}, &Vec2::x);
   const double reach = 52 / d.layout.metre;
   double top = front.y;
-  for (std::size_t i = 0; i < frame.n_soil; ++i) {
-    if (std::abs(frame.position[i].x - front.x) < reach) top = std::max(top, frame.position[i].y);
-  }
+  for (const Vec2 p : soil)
+    if (std::abs(p.x - front.x) < reach) top = std::max(top, p.y);
   top = std::min(top + 12 / d.layout.metre, d.view.hi.y - 14 / d.layout.metre);
-  const double bottom = d.terrain.closed || d.terrain.bed.empty() ? front.y : bed_height(d.terrain, front.x);
-  d.script.data("front" + tag, std::array<Vec2, 2>{Vec2{front.x, bottom}, Vec2{front.x, top}});
-  const std::string words = "front " + fixed(front.x - d.terrain.left_boundary, 2) + " m";
-  d.script("set label ", literal(words), " at ", front.x, ",", top,
-           " center offset 0,0.7 front font 'sans-serif:Bold,10' textcolor rgb '", vermillion, "'");
-  return "$front" + tag + " using 1:2 with lines dashtype 2 linewidth 1.2 linecolor rgb '" + vermillion + "', \\\n  ";
-}
-
-void axes(const Drawing& d, const Panel& panel) {
-  place(d.script, d.layout.canvas, panel);
-  d.script("set xrange [", d.view.lo.x, ":", d.view.hi.x, "]");
-  d.script("set yrange [", d.view.lo.y, ":", d.view.hi.y, "]");
-  d.script("set xtics ", nice_step(d.view.width(), std::max(2, static_cast<int>(panel.width() / 90))));
-  d.script("set ytics ", nice_step(d.view.height(), std::max(2, static_cast<int>(panel.height() / 50))));
-  d.script("set xlabel 'x (m)' offset 0,0.4");
-  d.script("set ylabel 'y (m)' offset 0.8,0");
+  const double bottom = d.terrain.closed || d.terrain.bed.empty() ? front.y : bed_height(d.terrain.bed, front.x);
+  d.sheet.script.data("front" + tag, std::array{Vec2{front.x, bottom}, Vec2{front.x, top}});
+  d.sheet.script("set label ", literal("front " + fixed(front.x - d.terrain.left_boundary, 2) + " m"), " at ", front.x,
+                 ",", top, " center offset 0,0.7 front font 'sans-serif:Bold,10' textcolor rgb '", vermillion, "'");
+  return line("front" + tag, vermillion, 1.2, true);
 }
 
 void colour_axis(Script& script, Colour colour, ColourRange range) {
-  script(palette_command(palette_of(colour)));
+  script(palette_command(*scale_of(colour).palette));
   script("set cbrange [", range.lo, ":", range.hi, "]");
   script("set cbtics ", nice_step(range.hi - range.lo, 4));
 }
@@ -104,19 +94,26 @@ void colour_axis(Script& script, Colour colour, ColourRange range) {
 void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRange range, bool mark_front) {
   const Panel& panel = d.layout.panels[k];
   const std::string tag = std::to_string(k);
-  axes(d, panel);
+  d.sheet.place(panel);
+  d.sheet.axes({d.view.lo.x, d.view.hi.x, nice_step(d.view.width(), panel.width(), 90), "x (m)"},
+               {d.view.lo.y, d.view.hi.y, nice_step(d.view.height(), panel.height(), 50), "y (m)"});
+  d.sheet.script("set xlabel offset 0,0.4");
+  d.sheet.script("set ylabel offset 0.8,0");
   const std::string caption = shot.caption.empty() ? "t = " + fixed(shot.frame->time, 2) + " s" : shot.caption;
-  text(d.script, d.layout.canvas, panel.left, panel.top - 12, caption, Align::left, 11, true);
-  const GroundElements bed = ground_elements(d.script, d.terrain, d.view, d.layout.metre, tag);
-  SoilElement soil;
-  std::string front;
+  d.sheet.text(panel.left, panel.top - 12, caption, {.points = 11, .bold = true});
+  const GroundElements bed = ground_elements(d.sheet.script, d.terrain, d.view, d.layout.metre, tag);
+  std::vector<std::string> elements = bed.behind;
+  std::string bytes;
   if (shot.frame->n_soil > 0) {
-    soil = d.raster ? soil_image(d, shot, range) : soil_disks(d, shot, tag);
-    if (mark_front) front = front_element(d, *shot.frame, tag);
+    SoilElements soil = d.raster ? soil_image(d, shot, range) : soil_disks(d, shot, tag);
+    elements.insert(elements.end(), soil.elements.begin(), soil.elements.end());
+    bytes = std::move(soil.bytes);
   }
-  d.script("plot ", bed.behind, soil.element, bed.front, front, "NaN").inline_binary(soil.bytes);
-  d.script("unset label");
-  d.script("unset colorbox");
+  elements.insert(elements.end(), bed.front.begin(), bed.front.end());
+  if (mark_front && shot.frame->n_soil > 0) elements.push_back(front_element(d, *shot.frame, tag));
+  d.sheet.script.plot(elements, bytes);
+  d.sheet.script("unset label");
+  d.sheet.script("unset colorbox");
 }
 
 std::vector<const Frame*> frames_of(std::span<const Snapshot> snapshots, std::optional<Colour> colour = {}) {
@@ -131,19 +128,10 @@ std::vector<const Frame*> frames_of(std::span<const Snapshot> snapshots, std::op
 
 Box view_of(std::span<const Frame* const> frames, const Terrain& terrain, double dx) {
   Box box{{1e300, 1e300}, {-1e300, -1e300}};
-  const auto include = [&box](Vec2 p) {
-    box.lo = {std::min(box.lo.x, p.x), std::min(box.lo.y, p.y)};
-    box.hi = {std::max(box.hi.x, p.x), std::max(box.hi.y, p.y)};
-  };
-  for (const Frame* frame : frames) {
-    for (std::size_t i = 0; i < frame->n_soil; ++i) include(frame->position[i]);
-  }
-  if (terrain.closed) {
-    for (const Vec2 p : terrain.bed) include(p);
-  }
-  if (box.lo.x > box.hi.x) {
-    for (const Vec2 p : terrain.bed) include(p);
-  }
+  for (const Frame* frame : frames)
+    for (std::size_t i = 0; i < frame->n_soil; ++i) box.include(frame->position[i]);
+  if (terrain.closed || box.lo.x > box.hi.x)
+    for (const Vec2 p : terrain.bed) box.include(p);
   const double margin = 0.03 * box.width() + dx;
   box.lo.x = std::min(box.lo.x, terrain.left_boundary) - margin;
   box.hi.x += 3 * margin;
@@ -159,6 +147,29 @@ Box view_of(std::span<const Frame* const> frames, const Terrain& terrain, double
   return box;
 }
 
+Layout profile_layout(std::size_t n, const Box& view, double caption) {
+  Layout layout;
+  for (std::size_t columns = 1; columns <= 4; ++columns) {
+    layout.canvas.width = columns == 1 ? 1040 : 1320;
+    const double widest = layout.canvas.width / static_cast<double>(columns) - left - right;
+    layout.metre = std::min(widest / view.width(), tallest / view.height());
+    const double width = layout.metre * view.width();
+    const double height = layout.metre * view.height();
+    const std::size_t rows = (n + columns - 1) / columns;
+    const double pitch = caption + height + beneath;
+    layout.canvas.height = std::round(header + static_cast<double>(rows) * pitch + footer);
+    layout.panels.clear();
+    for (std::size_t k = 0; k < n; ++k) {
+      const double x = static_cast<double>(k % columns) * (left + width + right) + left;
+      const double y = header + static_cast<double>(k / columns) * pitch + caption;
+      layout.panels.push_back({x, x + width, y, y + height});
+    }
+    layout.canvas.width = std::max(narrowest, std::round(layout.panels[std::min(n, columns) - 1].right + right));
+    if (layout.canvas.height <= tall_sheet) break;
+  }
+  return layout;
+}
+
 Sheet profile_sheet(std::span<const Snapshot> snapshots, const Terrain& terrain, double dx, const Stamps& stamps,
                     const ProfileOptions& options, bool raster) {
   const std::vector<const Frame*> frames = frames_of(snapshots);
@@ -167,32 +178,26 @@ Sheet profile_sheet(std::span<const Snapshot> snapshots, const Terrain& terrain,
   const Box view = options.view.value_or(view_of(frames, terrain, dx));
   const Layout layout = profile_layout(snapshots.size(), view, mixed ? 44 : 30);
   const double bar = 220;  // px
-  Sheet sheet{begin(layout.canvas, stamps, mixed ? 0 : bar + 170), layout.canvas};
-  const Drawing drawing{sheet.script, layout, terrain, dx, view, raster};
+  Sheet sheet(layout.canvas, stamps, mixed ? 0 : bar + 170);
+  const Drawing drawing{sheet, layout, terrain, dx, view, raster};
   for (std::size_t k = 0; k < snapshots.size(); ++k) {
     const Colour colour = snapshots[k].colour;
     const ColourRange range = rounded(options.range.value_or(value_range(frames_of(snapshots, colour), colour)));
-    const double right = mixed ? layout.panels[k].right : layout.canvas.width - 40;
+    const double bar_right = mixed ? layout.panels[k].right : layout.canvas.width - 40;
     const double top = mixed ? layout.panels[k].top - 34 : 14;
-    if (mixed || k == 0)
-      colour_bar(sheet.script, layout.canvas, {right - bar, right, top, top + 10}, colour_name(colour));
+    if (mixed || k == 0) sheet.colour_bar({bar_right - bar, bar_right, top, top + 10}, scale_of(colour).name);
     colour_axis(sheet.script, colour, range);
     panel_plot(drawing, k, snapshots[k], range, options.mark_front);
   }
   return sheet;
 }
 
-void plot_sequence(std::span<const Snapshot> snapshots, const Terrain& terrain, double dx,
+void plot_profiles(std::span<const Snapshot> snapshots, const Terrain& terrain, double dx,
                    const std::filesystem::path& path, const Stamps& stamps, const ProfileOptions& options) {
   std::size_t particles = 0;
   for (const Snapshot& s : snapshots) particles += s.frame->n_soil;
   const bool raster = path.extension() == ".svg" || particles > many;
   profile_sheet(snapshots, terrain, dx, stamps, options, raster).save(path);
-}
-
-void plot_profile(const Frame& frame, const Terrain& terrain, double dx, Colour colour,
-                  const std::filesystem::path& path, const Stamps& stamps, const ProfileOptions& options) {
-  plot_sequence(std::array{Snapshot{&frame, colour, {}}}, terrain, dx, path, stamps, options);
 }
 
 }  // namespace talus::figures

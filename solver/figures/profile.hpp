@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "figures/canvas.hpp"
-#include "figures/colour.hpp"
+#include "figures/sheet.hpp"
 #include "particles/geometry_input.hpp"
 #include "simulation/frame.hpp"
 
@@ -31,6 +30,19 @@ struct ProfileOptions {
 /// The soil of all frames and some terrain ahead of it. [m]
 Box view_of(std::span<const Frame* const> frames, const Terrain& terrain, double dx);
 
+/// Panels of equal size, row by row, on a canvas made for them.
+struct Layout {
+  Canvas canvas;
+  std::vector<Panel> panels;
+  double metre;  ///< px per metre, the same in x and y
+};
+
+/// Where the panels of a sequence of profiles go: equal aspect, as large as fits.
+/// @param n        panels, >= 1
+/// @param view     what each shows [m]
+/// @param caption  height of the caption row above each [px]
+Layout profile_layout(std::size_t n, const Box& view, double caption);
+
 /// The snapshots as panels of one figure with one scale and one colour scale a quantity.
 /// @param dx      particle spacing [m]; a particle is a disk around its square of edge dx
 /// @param raster  draw the soil as an image instead of disks, for an .svg of many particles
@@ -40,11 +52,7 @@ Sheet profile_sheet(std::span<const Snapshot> snapshots, const Terrain& terrain,
 /// The same, drawn to .svg or .png; an .svg gets the soil as an embedded image: as thousands of circles it would take
 /// megabytes.
 /// @throws IoError when gnuplot is missing or fails, or the file cannot be written
-void plot_sequence(std::span<const Snapshot> snapshots, const Terrain& terrain, double dx,
+void plot_profiles(std::span<const Snapshot> snapshots, const Terrain& terrain, double dx,
                    const std::filesystem::path& path, const Stamps& stamps, const ProfileOptions& options = {});
-
-/// One snapshot.
-void plot_profile(const Frame& frame, const Terrain& terrain, double dx, Colour colour,
-                  const std::filesystem::path& path, const Stamps& stamps, const ProfileOptions& options = {});
 
 }  // namespace talus::figures

@@ -12,15 +12,6 @@ namespace {
 constexpr int samples = 3;  // per pixel, each way
 constexpr double max_pixels = 4e6;
 
-Box box_around(std::span<const Disk> disks, double radius) {
-  Box box{disks.front().centre, disks.front().centre};
-  for (const Disk& d : disks) {
-    box.lo = {std::min(box.lo.x, d.centre.x - radius), std::min(box.lo.y, d.centre.y - radius)};
-    box.hi = {std::max(box.hi.x, d.centre.x + radius), std::max(box.hi.y, d.centre.y + radius)};
-  }
-  return box;
-}
-
 // Which disk is seen at each sample point, -1 for none.
 struct SampleGrid {
   Vec2 lo;
@@ -67,7 +58,11 @@ std::array<std::uint32_t, 4> pixel_of(const SampleGrid& grid, std::span<const Di
 
 Image disk_image(std::span<const Disk> disks, double radius, double pixel) {
   if (disks.empty()) return {};
-  const Box box = box_around(disks, radius);
+  Box box{disks.front().centre, disks.front().centre};
+  for (const Disk& d : disks) {
+    box.include(d.centre - Vec2{radius, radius});
+    box.include(d.centre + Vec2{radius, radius});
+  }
   Image image;
   image.pixel = std::max(pixel, std::sqrt(box.width() * box.height() / max_pixels));
   image.columns = static_cast<int>(std::ceil(box.width() / image.pixel));

@@ -41,14 +41,12 @@ struct StudyFiles {
   std::int64_t failed = 0;
   std::map<std::string, Quantity> quantities;  ///< by key: "influence_zone_m"
   std::vector<Done> realizations;              ///< in order of index
+
+  const Quantity& runout() const { return quantities.at("influence_zone_m"); }
 };
 
 /// Reads DIR/study.json and DIR/realizations.csv.
 /// @throws IoError naming the file and what it lacks
 StudyFiles read_study(const std::filesystem::path& directory);
-
-/// Rows of a CSV file as text by column name; fields may be quoted.
-/// @throws IoError naming file and line of a row whose fields do not match the header
-std::vector<std::map<std::string, std::string>> read_table(const std::filesystem::path& path);
 
 }  // namespace talus::figures

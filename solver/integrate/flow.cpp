@@ -2,11 +2,14 @@
 
 #include "integrate/plain_flow.hpp"
 #include "integrate/vectorised_flow.hpp"
+#include "material/equation_of_state-inl.hpp"
 
 namespace talus {
 
 double initial_pressure(const FlowConstants& k, const Soil& soil, std::size_t i) {
-  const double p = k.soils[static_cast<std::size_t>(soil.material[i])].eos.pressure(soil.rho[i]);
+  using namespace HWY_NAMESPACE;
+  const EquationOfState& eos = k.soils[static_cast<std::size_t>(soil.material[i])].eos;
+  const double p = pressure(eos.B, soil.rho[i] / eos.rho0 - 1.0);
   return k.numerics.tension_cutoff ? apply_tension_cutoff(p) : p;
 }
 

@@ -20,10 +20,10 @@ namespace talus {
 /// number of them.
 class Flow {
  public:
-  explicit Flow(FlowConstants constants) : rhs_(std::move(constants)) {}
+  explicit Flow(FlowConstants constants) : constants_(std::move(constants)) {}
   virtual ~Flow() = default;
 
-  const FlowConstants& constants() const { return rhs_.constants(); }
+  const FlowConstants& constants() const { return constants_; }
   /// "vectorised" or "plain".
   virtual const char* name() const = 0;
   /// The instruction set of its vectors ("AVX2", "AVX3_ZEN4", ...), or "none".
@@ -35,7 +35,7 @@ class Flow {
 
   /// One pass of the Shepard filter over the densities of the active soil.
   void filter_density(Soil& soil, const WallParticles& walls, const ParticleCells& cells) {
-    rhs_.filter_density(soil, walls, cells.soil, cells.walls);
+    talus::filter_density(constants_, soil, walls, cells);
     state_changed();
   }
 
@@ -64,7 +64,7 @@ class Flow {
   /// Something else than step() has changed the state of the soil.
   virtual void state_changed() {}
 
-  RightHandSide rhs_;
+  FlowConstants constants_;
   StageTimes times_;
 };
 

@@ -30,7 +30,56 @@ void copy_evaluation(const Soil& from, Soil& to) {
   for_each_derived(to, copy);
 }
 
+/// What moves with a rate of its own, besides the positions.
+constexpr struct {
+  std::vector<double> Soil::*value, Soil::*rate;
+} moved[] = {{&Soil::vx, &Soil::ax},    {&Soil::vy, &Soil::ay},    {&Soil::rho, &Soil::drho},
+             {&Soil::txx, &Soil::dtxx}, {&Soil::tyy, &Soil::dtyy}, {&Soil::txy, &Soil::dtxy}};
+
+/// y <- start + dt rate
+void move_from(Soil& soil, const Soil& start, std::size_t i, double dt) {
+  for (const auto& [value, rate] : moved) (soil.*value)[i] = (start.*value)[i] + dt * (soil.*rate)[i];
+}
+
+/// start.t += sign * soil.t, for every particle.
+void add_stress(Soil& start, const Soil& soil, double sign) {
+  for (const auto t : {&Soil::txx, &Soil::tyy, &Soil::txy})
+    for (std::size_t i = 0; i < soil.n_active; ++i) (start.*t)[i] += sign * (soil.*t)[i];
+}
+
 }  // namespace
+
+void PlainState::evaluate(double ahead, bool commit) {
+  if (ahead == 0.0) {
+    evaluate_(soil_);  // returns the stress of the state itself to the yield surface
+    return;
+  }
+  start_ = soil_;
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < soil_.n_active; ++i) {
+    soil_.x[i] += ahead * soil_.vx[i];
+    soil_.y[i] += ahead * soil_.vy[i];
+    move_from(soil_, start_, i, ahead);
+  }
+  if (commit) add_stress(start_, soil_, -1.0);
+  evaluate_(soil_);
+  if (commit) add_stress(start_, soil_, 1.0);
+}
+
+void PlainState::move(double dt, PositionVelocity velocity) {
+#pragma omp parallel for schedule(static)
+  for (std::size_t i = 0; i < soil_.n_active; ++i) {
+    if (velocity == PositionVelocity::midpoint) {
+      soil_.x[i] = start_.x[i] + dt * soil_.vx[i];
+      soil_.y[i] = start_.y[i] + dt * soil_.vy[i];
+      move_from(soil_, start_, i, dt);
+    } else {  // the positions are in the middle already, moved by the velocity at the start
+      move_from(soil_, start_, i, dt);
+      soil_.x[i] += 0.5 * dt * soil_.vx[i];
+      soil_.y[i] += 0.5 * dt * soil_.vy[i];
+    }
+  }
+}
 
 PlainFlow::PlainFlow(FlowConstants constants, Soil& soil) : Flow(std::move(constants)) {
   const auto make = [&](const char*, auto& array) { array.assign(soil.size(), 0.0); };
@@ -48,7 +97,7 @@ StepExtrema PlainFlow::step(Soil& soil, WallParticles& walls, const ParticleCell
   double evaluating = 0.0;
   const Evaluate evaluate = [&](Soil& s) {
     watch.lap(times_.update);
-    rhs_.evaluate(s, walls, cells.soil, cells.walls);
+    evaluate_plain(constants(), s, walls, cells);
     watch.lap(evaluating);
   };
   PlainState state(soil, start_, evaluate);

@@ -1,10 +1,30 @@
 #pragma once
 // The back end of double precision, one pair after the other: the oracle of VectorisedFlow.
 
+#include <functional>
+
 #include "integrate/flow.hpp"
-#include "integrate/plain_state.hpp"
+#include "integrate/schemes.hpp"
 
 namespace talus {
+
+/// Evaluates the rates of the soil at its present state: writes ax, ay, drho, dt**; may change t** (return to yield).
+using Evaluate = std::function<void(Soil&)>;
+
+/// Lets the schemes of integrate/schemes.hpp move `soil`. Refers to its arguments, which must live longer.
+class PlainState {
+ public:
+  /// @param start  keeps the state at the start of a step while the soil's arrays hold the middle; its memory is reused
+  PlainState(Soil& soil, Soil& start, const Evaluate& evaluate) : soil_(soil), start_(start), evaluate_(evaluate) {}
+
+  void evaluate(double ahead, bool commit);
+  void move(double dt, PositionVelocity velocity);
+
+ private:
+  Soil& soil_;
+  Soil& start_;
+  const Evaluate& evaluate_;
+};
 
 /// Keeps its rates in the arrays of the soil.
 class PlainFlow final : public Flow {
@@ -26,7 +46,7 @@ class PlainFlow final : public Flow {
   void write_evaluation(Soil& soil, const Soil& from) override;
 
  private:
-  StepStart start_;
+  Soil start_;
 };
 
 }  // namespace talus

@@ -66,56 +66,56 @@ void VectorisedFlow::swap_rates(Soil& soil, std::size_t i, std::size_t j) {
   });
 }
 
-void VectorisedFlow::permute_rates(Soil&, std::span<const std::uint32_t> order, std::vector<double>& scratch) {
-  for_each_packed_rate(flow_.soil, [&](const char*, auto& array) { permute(array, order, scratch); });
+void VectorisedFlow::permute_rates(Soil& soil, std::span<const std::uint32_t> order, std::vector<double>& scratch) {
+  for_each_pair(soil, flow_.soil, [&](auto&, auto& packed, std::size_t stride, std::size_t) {
+    if (stride == 1) permute(packed, order, scratch);  // the stress is rewritten before it is read
+  });
 }
 
 void VectorisedFlow::rebuild_neighbour_lists(const Soil& soil, const WallParticles& walls, const ParticleCells& cells,
                                              double moved_since_sort, double skin) {
   const std::size_t lanes = cluster_size();
   const double reach = 2.0 * constants().h + skin;
-  const auto lists = [](const std::vector<std::uint32_t>& first) {
-    return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size;
-  };
   flow_.mass = common_value(soil.m);
   flow_.fixed = FixedPoint::covering(cells.soil.box(), constants().h);
   flow_.soil_clusters = clusters(cells.soil, lanes);
   flow_.wall_clusters = clusters(cells.walls, lanes);
   flow_.walls.resize(walls.size());
-  flow_.soil_soil.chunks.resize(lists(flow_.soil_clusters));
-  flow_.soil_wall.chunks.resize(lists(flow_.soil_clusters));
-  flow_.wall_soil.chunks.resize(lists(flow_.wall_clusters));
-  pack_walls(flow_, walls);
-  work_.resize(flow_.soil_soil.chunks.size() + 1);
+  flow_.soil_soil.resize(flow_.soil_clusters);
+  flow_.soil_wall.resize(flow_.soil_clusters);
+  flow_.wall_soil.resize(flow_.wall_clusters);
+  pack_walls(flow_, constants(), walls);
+  work_.resize(flow_.soil_soil.batches.size() + 1);
   std::iota(work_.begin(), work_.end(), std::size_t{0});  // the lists that tell the work do not exist yet
   partition_work();
   present_is_packed_ = true;
   const auto n_soil = static_cast<std::uint32_t>(soil.size());
   const auto n_wall = static_cast<std::uint32_t>(walls.size());
-  const PackedSoil& s = flow_.soil;
-  const PackedWalls& w = flow_.walls;
+  const std::vector<float>&at_soil = flow_.soil.motion, &at_walls = flow_.walls.place;
+  const FixedPoint& fixed = flow_.fixed;
+  // Sources may have moved since the cells were built; from now on targets and sources both may move by `skin`.
+  const NeighbourSearch soil_soil{fixed,      flow_.soil_clusters, at_soil,          at_soil,
+                                  cells.soil, reach + skin,        moved_since_sort, n_soil};
+  const NeighbourSearch soil_wall{fixed, flow_.soil_clusters, at_soil, at_walls, cells.walls, reach, 0.0, n_wall};
+  const NeighbourSearch wall_soil{fixed, flow_.wall_clusters, at_walls, at_soil, cells.soil,
+                                  reach, moved_since_sort,    n_soil};
 #pragma omp parallel
   {
     pack_active(soil, 0.0);
-    // Sources may have moved since the cells were built; from now on targets and sources both may move by `skin`.
 #pragma omp for schedule(static) nowait
-    for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) {
-      list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, cells.soil, s.motion, reach + skin, moved_since_sort,
-                      n_soil, c, flow_.soil_soil);
-      list_neighbours(flow_.fixed, flow_.soil_clusters, s.motion, cells.walls, w.place, reach, 0.0, n_wall, c,
-                      flow_.soil_wall);
+    for (std::size_t b = 0; b < flow_.soil_soil.batches.size(); ++b) {
+      list_neighbours(soil_soil, b, flow_.soil_soil);
+      list_neighbours(soil_wall, b, flow_.soil_wall);
     }
 #pragma omp for schedule(dynamic)
-    for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c)
-      list_neighbours(flow_.fixed, flow_.wall_clusters, w.place, cells.soil, s.motion, reach, moved_since_sort, n_soil,
-                      c, flow_.wall_soil);
+    for (std::size_t b = 0; b < flow_.wall_soil.batches.size(); ++b) list_neighbours(wall_soil, b, flow_.wall_soil);
   }
   work_.assign(1, 0);
-  for (std::size_t c = 0; c < flow_.soil_soil.chunks.size(); ++c) {
+  for (std::size_t b = 0; b < flow_.soil_soil.batches.size(); ++b) {
     constexpr std::size_t other_work = 10;  // what a cluster costs besides its pairs, in neighbours
-    const auto length = [&](const ClusterList& list) { return std::size_t{list.chunks[c].at.back()}; };
+    const auto length = [&](const ClusterList& list) { return std::size_t{list.batches[b].at.back()}; };
     work_.push_back(work_.back() + length(flow_.soil_soil) + 2 * length(flow_.soil_wall) +
-                    other_work * ClusterList::chunk_size);
+                    other_work * ClusterList::batch_size);
   }
 }
 
@@ -125,10 +125,10 @@ void VectorisedFlow::partition_work() {
   const std::size_t clusters = flow_.soil_clusters.size() - 1;
   const auto border = [&](std::size_t t) {
     const auto work = work_.back() * t / threads;
-    const auto chunk = static_cast<std::size_t>(std::upper_bound(work_.begin(), work_.end(), work) - work_.begin()) - 1;
-    if (chunk + 1 == work_.size()) return clusters;
-    const std::size_t within = ClusterList::chunk_size * (work - work_[chunk]) / (work_[chunk + 1] - work_[chunk]);
-    return std::min(ClusterList::chunk_size * chunk + within, clusters);
+    const auto batch = static_cast<std::size_t>(std::upper_bound(work_.begin(), work_.end(), work) - work_.begin()) - 1;
+    if (batch + 1 == work_.size()) return clusters;
+    const std::size_t within = ClusterList::batch_size * (work - work_[batch]) / (work_[batch + 1] - work_[batch]);
+    return std::min(ClusterList::batch_size * batch + within, clusters);
   };
   ranges_.resize(threads);
   for (std::size_t t = 0; t < threads; ++t)
@@ -153,7 +153,7 @@ void VectorisedFlow::for_clusters_with_stealing(std::size_t ThreadRange::*next, 
     for (std::size_t c; (c = taken.load(std::memory_order_relaxed)) < range.end;) {
       const std::size_t some = range.end - c > 4 * many ? many : few;
       c = taken.fetch_add(some, std::memory_order_relaxed);
-      if (c < range.end) f(Chunk{c, std::min(c + some, range.end)});
+      if (c < range.end) f(Range{c, std::min(c + some, range.end)});
     }
   }
 }
@@ -166,12 +166,12 @@ void VectorisedFlow::for_local_particles(std::size_t active, F&& f) {
   const auto threads = static_cast<std::size_t>(omp_get_num_threads());
   const auto first = [&](std::size_t cluster) { return std::min<std::size_t>(flow_.soil_clusters[cluster], active); };
   for (std::size_t t = thread; t < ranges_.size(); t += threads)
-    f(Chunk{first(ranges_[t].begin), first(ranges_[t].end)});
+    f(Range{first(ranges_[t].begin), first(ranges_[t].end)});
 }
 
 /// Inside a parallel region.
 void VectorisedFlow::pack_active(const Soil& soil, double ahead) {
-  for_local_particles(soil.n_active, [&](Chunk own) { pack_soil(flow_, constants(), soil, ahead, own); });
+  for_local_particles(soil.n_active, [&](Range range) { pack_soil(flow_, constants(), soil, ahead, range); });
 #pragma omp barrier
 }
 
@@ -182,16 +182,16 @@ void VectorisedFlow::evaluate_in_region(Soil& soil, WallParticles& walls, double
 #pragma omp master
   watch.lap(times_.update);
   for_clusters_with_stealing(&ThreadRange::stress, &ThreadRange::momentum,
-                             [&](Chunk some) { stress_pass(flow_, constants(), soil, ahead, commit, some); });
+                             [&](Range range) { stress_pass(flow_, constants(), soil, ahead, commit, range); });
 #pragma omp barrier
 #pragma omp master
   watch.lap(times_.gradient);
 #pragma omp for schedule(static)
-  for (std::size_t c = 0; c < flow_.wall_soil.chunks.size(); ++c) wall_stress_pass(flow_, constants(), walls, c);
+  for (std::size_t b = 0; b < flow_.wall_soil.batches.size(); ++b) wall_stress_pass(flow_, constants(), walls, b);
 #pragma omp master
   watch.lap(times_.walls);
   for_clusters_with_stealing(&ThreadRange::momentum, &ThreadRange::stress,
-                             [&](Chunk some) { momentum_pass(flow_, constants(), some); });
+                             [&](Range range) { momentum_pass(flow_, constants(), range); });
 #pragma omp barrier
 #pragma omp master
   watch.lap(times_.momentum);
@@ -218,9 +218,9 @@ struct VectorisedFlow::ThreadStep {
   }
   StepExtrema move(double dt, PositionVelocity velocity) {
     StepExtrema extrema;
-    flow.for_local_particles(soil.n_active, [&](Chunk own) {
-      extrema =
-          extrema.merge(move_soil(flow.flow_, flow.constants(), soil, dt, velocity == PositionVelocity::midpoint, own));
+    flow.for_local_particles(soil.n_active, [&](Range range) {
+      extrema = extrema.merge(
+          move_soil(flow.flow_, flow.constants(), soil, dt, velocity == PositionVelocity::midpoint, range));
     });
     return extrema;
   }

@@ -55,7 +55,7 @@ class VectorisedFlow final : public Flow {
   void evaluate_in_region(Soil& soil, WallParticles& walls, double ahead, bool commit, bool pack, Stopwatch& watch);
 
   PackedFlow flow_;
-  std::vector<std::size_t> work_ = {0};  ///< neighbours to sum over in all chunks before each one
+  std::vector<std::size_t> work_ = {0};  ///< neighbours to sum over in all batches before each one
   std::vector<ThreadRange> ranges_;      ///< by thread
   bool present_is_packed_ = false;       ///< the packed arrays hold the present state
 };

@@ -1,6 +1,5 @@
 #include "io/checkpoint.hpp"
 
-#include <charconv>
 #include <cinttypes>
 #include <cstdint>
 #include <cstdio>
@@ -43,16 +42,12 @@ std::string_view checked_body(std::string_view content, const fs::path& path) {
   return body;
 }
 
-void check_name(const std::string& name) {
-  if (name.empty() || name == "." || name.find('/') != std::string::npos)
-    throw std::invalid_argument("checkpoint: array name \"" + name + "\"");
-}
-
 template <class T>
 void write_arrays(hid_t file, const std::string& group_name, const std::map<std::string, std::vector<T>>& arrays) {
   const hdf5::Id group = hdf5::create_group(file, group_name);
   for (const auto& [name, values] : arrays) {
-    check_name(name);
+    if (name.empty() || name == "." || name.find('/') != std::string::npos)
+      throw std::invalid_argument("checkpoint: array name \"" + name + "\"");
     hdf5::write_array<T>(group, name, values);
   }
 }
@@ -65,27 +60,20 @@ std::map<std::string, std::vector<T>> read_arrays(hid_t file, const std::string&
   return arrays;
 }
 
-void write_header(hid_t file, const CheckpointHeader& header) {
-  hdf5::write_attribute(file, "format", format);
-  hdf5::write_text_attribute(file, "talus_version", header.talus_version);
-  hdf5::write_text_attribute(file, "case_hash", header.case_hash);
-  hdf5::write_attribute(file, "seed", header.seed);
-  if (header.realization) hdf5::write_attribute(file, "realization", *header.realization);
-  if (header.perturbation) hdf5::write_attribute(file, "perturbation", *header.perturbation);
-}
-
+void write(hid_t file, const char* name, const std::string& text) { hdf5::write_text_attribute(file, name, text); }
+void write(hid_t file, const char* name, std::uint64_t value) { hdf5::write_attribute(file, name, value); }
 template <class T>
-std::optional<T> read_optional(hid_t file, const std::string& name) {
-  if (!hdf5::has_attribute(file, name)) return std::nullopt;
-  return hdf5::read_attribute<T>(file, name);
+void write(hid_t file, const char* name, const std::optional<T>& value) {
+  if (value) hdf5::write_attribute(file, name, *value);
 }
 
-CheckpointHeader read_header(hid_t file) {
-  return {.talus_version = hdf5::read_text_attribute(file, "talus_version"),
-          .case_hash = hdf5::read_text_attribute(file, "case_hash"),
-          .seed = hdf5::read_attribute<std::uint64_t>(file, "seed"),
-          .realization = read_optional<std::int64_t>(file, "realization"),
-          .perturbation = read_optional<double>(file, "perturbation")};
+void read(hid_t file, const char* name, std::string& text) { text = hdf5::read_text_attribute(file, name); }
+void read(hid_t file, const char* name, std::uint64_t& value) {
+  value = hdf5::read_attribute<std::uint64_t>(file, name);
+}
+template <class T>
+void read(hid_t file, const char* name, std::optional<T>& value) {
+  if (hdf5::has_attribute(file, name)) value = hdf5::read_attribute<T>(file, name);
 }
 
 std::string text(const std::string& value) { return value; }
@@ -93,17 +81,26 @@ std::string text(std::uint64_t value) { return std::to_string(value); }
 std::string text(const std::optional<std::int64_t>& value) { return value ? std::to_string(*value) : "none"; }
 std::string text(const std::optional<double>& value) { return value ? to_text(*value) : "none"; }
 
-/// "; seed 7, wanted 8" for each part that differs.
+/// Calls use(name of the attribute, word in messages, member) for each member of a header.
+template <class Header, class Use>
+void for_each_member(Header& header, Use use) {
+  use("talus_version", "version", header.talus_version);
+  use("case_hash", "case", header.case_hash);
+  use("seed", "seed", header.seed);
+  use("realization", "realization", header.realization);
+  use("perturbation", "perturbation", header.perturbation);
+}
+
+/// "; seed 7, wanted 8" for each member that differs.
 std::string differences(const CheckpointHeader& found, const CheckpointHeader& expected) {
+  std::vector<std::string> wanted;
+  for_each_member(expected, [&](auto, auto, const auto& value) { wanted.push_back(text(value)); });
   std::string all;
-  const auto compare = [&all](const char* what, const auto& a, const auto& b) {
-    if (a != b) all += std::string("; ") + what + " " + text(a) + ", wanted " + text(b);
-  };
-  compare("version", found.talus_version, expected.talus_version);
-  compare("case", found.case_hash, expected.case_hash);
-  compare("seed", found.seed, expected.seed);
-  compare("realization", found.realization, expected.realization);
-  compare("perturbation", found.perturbation, expected.perturbation);
+  auto next = wanted.begin();
+  for_each_member(found, [&](auto, const std::string& word, const auto& value) {
+    const std::string& other = *next++;
+    if (text(value) != other) all += "; " + word + " " + text(value) + ", wanted " + other;
+  });
   return all;
 }
 
@@ -111,7 +108,8 @@ std::string differences(const CheckpointHeader& found, const CheckpointHeader& e
 
 void write_checkpoint(const fs::path& path, const CheckpointState& state, const CheckpointHeader& header) {
   const hdf5::Id file = hdf5::create_in_memory();
-  write_header(file, header);
+  hdf5::write_attribute(file, "format", format);
+  for_each_member(header, [&](const char* name, auto, const auto& value) { write(file, name, value); });
   hdf5::write_attribute(file, "wall_clock_s", state.wall_clock);
   write_arrays(file, "reals", state.reals);
   write_arrays(file, "integers", state.integers);
@@ -127,11 +125,15 @@ CheckpointState read_checkpoint(const fs::path& path, const CheckpointHeader& ex
   if (found_format != format)
     throw IoError(path.string() + " has checkpoint format " + std::to_string(found_format) +
                   "; this program reads format " + std::to_string(format));
-  if (const std::string differ = differences(read_header(file), expected); !differ.empty())
+  CheckpointHeader found;
+  for_each_member(found, [&](const char* name, auto, auto& value) { read(file, name, value); });
+  if (const std::string differ = differences(found, expected); !differ.empty())
     throw IoError(path.string() + " is the checkpoint of another run" + differ);
+  std::optional<double> wall_clock;
+  read(file, "wall_clock_s", wall_clock);
   return {.reals = read_arrays<double>(file, "reals"),
           .integers = read_arrays<std::int64_t>(file, "integers"),
-          .wall_clock = read_optional<double>(file, "wall_clock_s").value_or(0.0)};
+          .wall_clock = wall_clock.value_or(0.0)};
 }
 
 }  // namespace talus

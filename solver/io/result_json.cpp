@@ -7,183 +7,161 @@
 
 #include "math/angle.hpp"
 #include "support/error.hpp"
-#include "support/files.hpp"
 #include "support/json.hpp"
 
 namespace talus {
 namespace {
 
-namespace fs = std::filesystem;
-using ordered_json = Json;
-
 constexpr const char* ending_names[] = {"end_time", "at_rest", "interrupted"};
+constexpr double unbounded = -std::numeric_limits<double>::infinity();
 
-void refuse_not_finite(const ordered_json& node, const std::string& pointer) {
-  if (node.is_number_float() && !std::isfinite(node.get<double>()))
-    throw std::domain_error("result: " + pointer + " is not a finite number");
-  if (node.is_object())
-    for (const auto& [key, value] : node.items()) refuse_not_finite(value, pointer + "/" + key);
-}
+enum class Direction { write, read };
 
-template <class T>
-ordered_json or_null(const std::optional<T>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-/// One object of the document, read key by key.
-class Reader {
+/// One object of the document. A member is declared by the one call that writes it from its variable, or reads it into
+/// that.
+class ObjectIo {
  public:
-  Reader(const Json& node, std::string file, std::string pointer)
-      : node_(node), file_(std::move(file)), pointer_(std::move(pointer)) {
+  ObjectIo(Json& node, Direction direction, std::string file, std::string pointer)
+      : node_(node), reading_(direction == Direction::read), file_(std::move(file)), pointer_(std::move(pointer)) {
+    if (!reading_) node_ = Json::object();
     if (!node_.is_object())
       throw IoError(file_ + ": " + (pointer_.empty() ? "the document" : pointer_) + " is not an object");
   }
 
-  Reader object(const char* key) const { return {value(key), file_, pointer_ + "/" + key}; }
-  double number(const char* key, double least = -std::numeric_limits<double>::infinity()) const {
-    const Json& v = value(key);
-    if (!v.is_number() || v.get<double>() < least) fail(key, "a number", least);
-    return v.get<double>();
+  /// To be done with before this object gets another member, which may move it.
+  ObjectIo object(const char* key) {
+    return {member(key), reading_ ? Direction::read : Direction::write, file_, pointer_ + "/" + key};
   }
-  template <class T = std::int64_t>
-  T integer(const char* key, T least = 0) const {
-    const Json& v = value(key);
-    if (!v.is_number_integer()) fail(key, "an integer", static_cast<double>(least));
+  void number(const char* key, double& value, double least = unbounded) {
+    transfer(key, value, &Json::is_number, "a number", least);
+    if (reading_ && value < least) fail(key, "a number", least);
+    if (!std::isfinite(value)) throw std::domain_error("result: " + pointer_ + "/" + key + " is not a finite number");
+  }
+  template <std::integral T>
+  void integer(const char* key, T& value, T least = 0) {
+    transfer(key, value, &Json::is_number_integer, "an integer", static_cast<double>(least));
+    const Json& v = member(key);
     // A number that JSON gives as unsigned may be too large for the signed type.
     const bool fits =
         v.is_number_unsigned() ? std::in_range<T>(v.get<std::uint64_t>()) : std::in_range<T>(v.get<std::int64_t>());
-    if (!fits || v.get<T>() < least) fail(key, "an integer in range", static_cast<double>(least));
-    return v.get<T>();
+    if (!fits || value < least) fail(key, "an integer in range", static_cast<double>(least));
   }
-  bool boolean(const char* key) const {
-    if (!value(key).is_boolean()) fail(key, "true or false");
-    return value(key).get<bool>();
+  void boolean(const char* key, bool& value) { transfer(key, value, &Json::is_boolean, "true or false"); }
+  void text(const char* key, std::string& value) { transfer(key, value, &Json::is_string, "a text"); }
+  /// For a key that earlier versions did not write; empty without it.
+  void text_or_empty(const char* key, std::string& value) {
+    if (!reading_ || node_.contains(key))
+      text(key, value);
+    else
+      value.clear();
   }
-  std::string text(const char* key) const {
-    if (!value(key).is_string()) fail(key, "a text");
-    return value(key).get<std::string>();
-  }
-  /// For keys that earlier versions did not write.
-  std::string text_or_empty(const char* key) const { return node_.contains(key) ? text(key) : std::string(); }
-  std::string digest(const char* key) const {
-    const std::string digits = text(key);
-    if (digits.size() != 16 || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
+  void digest(const char* key, std::string& digits) {
+    text(key, digits);
+    if (reading_ && (digits.size() != 16 || digits.find_first_not_of("0123456789abcdef") != std::string::npos))
       fail(key, "16 hexadecimal digits");
-    return digits;
   }
-  Ending ending(const char* key) const {
-    const std::string name = text(key);
-    for (int i = 0; i < 3; ++i)
-      if (name == ending_names[i]) return static_cast<Ending>(i);
-    fail(key, "end_time, at_rest or interrupted");
+  void ending(const char* key, Ending& value) {
+    std::string name = ending_names[static_cast<int>(value)];
+    text(key, name);
+    const auto* const found = std::ranges::find(ending_names, name);
+    if (found == std::end(ending_names)) fail(key, "end_time, at_rest or interrupted");
+    value = static_cast<Ending>(found - ending_names);
   }
-  std::optional<std::int64_t> integer_or_null(const char* key) const {
-    return value(key).is_null() ? std::nullopt : std::optional(integer(key));
+  void optional(const char* key, std::optional<double>& value) {
+    or_null(key, value, [&](double& x) { number(key, x); });
   }
-  std::optional<double> number_or_null(const char* key) const {
-    return value(key).is_null() ? std::nullopt : std::optional(number(key));
+  void optional(const char* key, std::optional<std::int64_t>& value) {
+    or_null(key, value, [&](std::int64_t& n) { integer(key, n); });
   }
 
  private:
-  const Json& value(const char* key) const {
-    const auto found = node_.find(key);
-    if (found == node_.end()) throw IoError(file_ + ": " + pointer_ + "/" + key + " is missing");
-    return *found;
+  template <class T>
+  void transfer(const char* key, T& value, bool (Json::*of_kind)() const noexcept, const char* wanted,
+                double least = unbounded) {
+    Json& v = member(key);
+    if (!reading_)
+      v = value;
+    else if (!(v.*of_kind)())
+      fail(key, wanted, least);
+    else
+      value = v.get<T>();
   }
-  [[noreturn]] void fail(const char* key, const std::string& wanted,
-                         double least = -std::numeric_limits<double>::infinity()) const {
+  template <class T, class Use>
+  void or_null(const char* key, std::optional<T>& value, Use&& use) {
+    if (reading_ ? !member(key).is_null() : value.has_value())
+      use(value ? *value : value.emplace());
+    else
+      member(key) = nullptr;
+  }
+  Json& member(const char* key) {
+    if (reading_ && !node_.contains(key)) throw IoError(file_ + ": " + pointer_ + "/" + key + " is missing");
+    return node_[key];
+  }
+  [[noreturn]] void fail(const char* key, const std::string& wanted, double least = unbounded) {
     const std::string range = std::isfinite(least) ? " >= " + std::to_string(static_cast<long long>(least)) : "";
     throw IoError(file_ + ": " + pointer_ + "/" + key + " = " +
-                  value(key).dump(-1, ' ', true, Json::error_handler_t::replace) + " is not " + wanted + range);
+                  member(key).dump(-1, ' ', true, Json::error_handler_t::replace) + " is not " + wanted + range);
   }
 
-  const Json& node_;
+  Json& node_;
+  bool reading_;
   std::string file_;
   std::string pointer_;
 };
 
-RunResult read_run(const Reader& root) {
-  const Reader particles = root.object("particles");
-  const Reader field = root.object("field");
-  Measures measures;
-  for (const Measure& measure : measure_table) measures.*measure.member = root.number(measure.key);
-  return {.measures = measures,
-          .ending = root.ending("ending"),
-          .soil = particles.integer("soil"),
-          .wall = particles.integer("wall"),
-          .steps = root.integer("steps"),
-          .time = root.number("time_s", 0.0),
-          .evaluations = root.integer("evaluations"),
-          .wall_clock = root.number("wall_clock_s", 0.0),
-          .threads = root.integer<int>("threads", 1),
-          .max_speed = root.number("max_speed_m_s", 0.0),
-          .final_max_speed = root.number("final_max_speed_m_s", 0.0),
-          .penetrated = root.integer("penetrated"),
-          .left_domain = root.integer("left_domain"),
-          .at_rest = root.boolean("at_rest"),
-          .digest = root.digest("digest"),
-          .backend = root.text_or_empty("backend"),
-          .simd = root.text_or_empty("simd"),
-          .field = {.captured_variance = field.number("captured_variance", 0.0),
-                    .mean_phi = radians(field.number("mean_friction_angle_deg", 0.0)),
-                    .terms = field.integer("terms")}};
-}
+/// Every member of the document, in its order.
+void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
+  for (const Measure& measure : measure_table) root.number(measure.key, result.measures.*measure.member);
+  ObjectIo particles = root.object("particles");
+  particles.integer("soil", result.soil);
+  particles.integer("wall", result.wall);
+  root.integer("steps", result.steps);
+  root.number("time_s", result.time, 0.0);
+  root.integer("evaluations", result.evaluations);
+  root.number("wall_clock_s", result.wall_clock, 0.0);
+  root.integer("threads", result.threads, 1);
+  root.number("max_speed_m_s", result.max_speed, 0.0);
+  root.number("final_max_speed_m_s", result.final_max_speed, 0.0);
+  root.integer("penetrated", result.penetrated);
+  root.integer("left_domain", result.left_domain);
+  root.boolean("at_rest", result.at_rest);
+  root.ending("ending", result.ending);
+  root.text_or_empty("backend", result.backend);
+  root.text_or_empty("simd", result.simd);
+  root.digest("digest", result.digest);
 
-Provenance read_provenance(const Reader& node) {
-  return {.version = node.text("version"),
-          .seed = node.integer<std::uint64_t>("seed"),
-          .realization = node.integer_or_null("realization"),
-          .perturbation = node.number_or_null("perturbation"),
-          .case_hash = node.text("case_hash"),
-          .case_title = node.text("case_title"),
-          .compiler = node.text("compiler"),
-          .started_utc = node.text("started_utc")};
+  ObjectIo field = root.object("field");
+  double mean_phi_deg = degrees(result.field.mean_phi);
+  field.number("captured_variance", result.field.captured_variance, 0.0);
+  field.number("mean_friction_angle_deg", mean_phi_deg, 0.0);
+  field.integer("terms", result.field.terms);
+  result.field.mean_phi = radians(mean_phi_deg);
+
+  ObjectIo provenance = root.object("provenance");
+  provenance.text("version", from.version);
+  provenance.integer("seed", from.seed);
+  provenance.optional("realization", from.realization);
+  provenance.optional("perturbation", from.perturbation);
+  provenance.text("case_hash", from.case_hash);
+  provenance.text("case_title", from.case_title);
+  provenance.text("compiler", from.compiler);
+  provenance.text("started_utc", from.started_utc);
 }
 
 }  // namespace
 
-ordered_json result_json(const RunResult& result, const Provenance& provenance) {
-  ordered_json document;
-  for (const Measure& measure : measure_table) document[measure.key] = result.measures.*measure.member;
-  document.update({
-      {"particles", {{"soil", result.soil}, {"wall", result.wall}}},
-      {"steps", result.steps},
-      {"time_s", result.time},
-      {"evaluations", result.evaluations},
-      {"wall_clock_s", result.wall_clock},
-      {"threads", result.threads},
-      {"max_speed_m_s", result.max_speed},
-      {"final_max_speed_m_s", result.final_max_speed},
-      {"penetrated", result.penetrated},
-      {"left_domain", result.left_domain},
-      {"at_rest", result.at_rest},
-      {"ending", ending_names[static_cast<int>(result.ending)]},
-      {"backend", result.backend},
-      {"simd", result.simd},
-      {"digest", result.digest},
-      {"field",
-       {{"captured_variance", result.field.captured_variance},
-        {"mean_friction_angle_deg", degrees(result.field.mean_phi)},
-        {"terms", result.field.terms}}},
-      {"provenance",
-       {{"version", provenance.version},
-        {"seed", provenance.seed},
-        {"realization", or_null(provenance.realization)},
-        {"perturbation", or_null(provenance.perturbation)},
-        {"case_hash", provenance.case_hash},
-        {"case_title", provenance.case_title},
-        {"compiler", provenance.compiler},
-        {"started_utc", provenance.started_utc}}},
-  });
-  refuse_not_finite(document, "");
+Json result_json(RunResult result, Provenance provenance) {
+  Json document;
+  transfer_all({document, Direction::write, "", ""}, result, provenance);
   return document;
 }
 
-std::pair<RunResult, Provenance> read_result(const fs::path& path) {
+std::pair<RunResult, Provenance> read_result(const std::filesystem::path& path) {
   constexpr std::size_t max_bytes = std::size_t{1} << 20;
-  const Json document = read_json(path, max_bytes);
-  const Reader root(document, path.string(), "");
-  return {read_run(root), read_provenance(root.object("provenance"))};
+  Json document = read_json(path, max_bytes);
+  std::pair<RunResult, Provenance> all;
+  transfer_all({document, Direction::read, path.string(), ""}, all.first, all.second);
+  return all;
 }
 
 }  // namespace talus

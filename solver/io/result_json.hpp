@@ -26,7 +26,7 @@ struct Provenance {
 
 /// The document; angles in degrees, `realization` and `perturbation` null where unset.
 /// @throws std::domain_error naming the key of a number that is not finite: JSON has no word for it
-nlohmann::ordered_json result_json(const RunResult& result, const Provenance& provenance);
+nlohmann::ordered_json result_json(RunResult result, Provenance provenance);
 
 /// Reads a result.json. Keys that it does not know are passed over: a later version may have written them.
 /// @throws IoError naming the file and, with its JSON pointer, the first key that is missing or wrong

@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "io/vtkhdf_layout.hpp"
-#include "io/xdmf.hpp"
 #include "support/error.hpp"
 #include "support/files.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
@@ -19,10 +19,8 @@ namespace fs = std::filesystem;
 
 void check_lengths(const Frame& f) {
   const std::size_t n = f.position.size();
-  const std::size_t lengths[] = {f.displacement.size(), f.velocity.size(),   f.density.size(), f.pressure.size(),
-                                 f.tan_phi.size(),      f.shear_rate.size(), f.stress.size()};
-  if (n == 0 || f.n_soil > n ||
-      std::any_of(std::begin(lengths), std::end(lengths), [n](std::size_t m) { return m != n; }))
+  const auto all_equal = [n](const auto&... array) { return ((array.size() == n) && ...); };
+  if (n == 0 || f.n_soil > n || !std::apply(all_equal, vtkhdf::arrays_of(f)))
     throw std::invalid_argument("snapshot: the frame is empty or its arrays differ in length");
 }
 
@@ -34,7 +32,7 @@ class Reserve {
   Reserve(const fs::path& path, std::size_t particles)
       : path_(path), file_(::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
     if (!file_) throw_io_error("write", path_, errno);
-    std::size_t numbers_per_row = 3;
+    std::size_t numbers_per_row = 0;
     for (const vtkhdf::Field& f : vtkhdf::fields) numbers_per_row += static_cast<std::size_t>(f.components);
     const std::size_t rows = particles + 2 * std::min(particles, vtkhdf::max_chunk);  // a chunk that grows may move
     constexpr std::size_t metadata = 128 * 1024;
@@ -65,6 +63,25 @@ class Reserve {
   off_t old_size_ = 0;
 };
 
+hdf5::Id open_snapshots(const fs::path& path) {
+  hdf5::Id file = hdf5::open_file(path, hdf5::Access::read);
+  if (!hdf5::has(file, "VTKHDF") || !hdf5::has(file, "talus"))
+    throw IoError(path.string() + " is not a file of snapshots of Talus");
+  return file;
+}
+
+std::vector<double> times_of(const hdf5::Id& file) {
+  const hdf5::Id steps = hdf5::open_group(file, "VTKHDF/Steps");
+  const auto count = hdf5::read_attribute<std::int64_t>(steps, "NSteps");
+  return hdf5::read_rows<double>(steps, "Values", 0, static_cast<std::size_t>(std::max<std::int64_t>(count, 0)));
+}
+
+void check_lengths(std::span<const Vec2> positions, std::span<const NamedArray> arrays) {
+  for (const NamedArray& a : arrays)
+    if (a.values.size() != positions.size())
+      throw std::invalid_argument("points: array " + a.name + " has another length than the positions");
+}
+
 }  // namespace
 
 SnapshotWriter::SnapshotWriter(fs::path path, hdf5::Id file) : path_(std::move(path)), file_(std::move(file)) {}
@@ -72,13 +89,11 @@ SnapshotWriter::SnapshotWriter(fs::path path, hdf5::Id file) : path_(std::move(p
 SnapshotWriter::SnapshotWriter(fs::path path, const Frame& first)
     : path_(std::move(path)), times_{first.time}, particles_(first.position.size()) {
   check_lengths(first);
-  {
-    const hdf5::Id memory = hdf5::create_in_memory();
-    vtkhdf::create_skeleton(memory, first);
-    vtkhdf::append_step(memory, first, 0);
-    vtkhdf::commit(memory, 1);
-    write_file_atomically(path_, hdf5::image(memory));
-  }
+  const hdf5::Id memory = hdf5::create_in_memory();
+  vtkhdf::create_skeleton(memory, first);
+  vtkhdf::append_step(memory, first, 0);
+  vtkhdf::commit(memory, 1);
+  write_file_atomically(path_, hdf5::image(memory));
   file_ = hdf5::open_file(path_, hdf5::Access::read_write);
   write_sidecar();
 }
@@ -109,10 +124,7 @@ void SnapshotWriter::append(const Frame& frame) {
   vtkhdf::append_step(file_, frame, times_.size());
   hdf5::flush(file_);
   vtkhdf::commit(file_, times_.size() + 1);
-  hdf5::flush(file_);
-  hsize_t size = 0;
-  if (H5Fget_filesize(file_, &size) < 0) hdf5::fail("cannot write " + path_.string());
-  reserve.release(size);
+  reserve.release(hdf5::flush(file_));
   times_.push_back(frame.time);
   write_sidecar();
 }
@@ -123,7 +135,60 @@ void SnapshotWriter::close() {
 
 void SnapshotWriter::write_sidecar() const {
   write_file_atomically(fs::path(path_).replace_extension(".xdmf"),
-                        xdmf_document(path_.filename().string(), particles_, times_));
+                        vtkhdf::xdmf_document(path_.filename().string(), particles_, times_));
+}
+
+std::vector<double> snapshot_times(const fs::path& path) { return times_of(open_snapshots(path)); }
+
+Frame read_frame(const fs::path& path, std::size_t index) {
+  const hdf5::Id file = open_snapshots(path);
+  const std::vector<double> times = times_of(file);
+  if (index >= times.size())
+    throw IoError(path.string() + " has " + std::to_string(times.size()) + " steps; there is no step " +
+                  std::to_string(index));
+  const auto walls = hdf5::read_array<std::int32_t>(file, "VTKHDF/PointData/is_wall");
+  const std::size_t n = walls.size();
+
+  Frame frame;
+  frame.time = times[index];
+  frame.step = hdf5::read_rows<std::int64_t>(file, "talus/step", index, 1)[0];
+  frame.n_soil = static_cast<std::size_t>(std::count(walls.begin(), walls.end(), 0));
+  std::apply([n](auto&... array) { (array.resize(n), ...); }, vtkhdf::arrays_of(frame));
+  for (const vtkhdf::Field& f : vtkhdf::fields) {
+    const auto components = static_cast<std::size_t>(f.components);
+    const std::vector<float> values = hdf5::read_rows<float>(file, f.path, index * n, n);
+    if (values.size() != n * components)
+      throw IoError("the snapshots' array " + f.name() + " has another shape than expected");
+    for (std::size_t i = 0; i < n; ++i) f.set(frame, i, &values[i * components]);
+  }
+  return frame;
+}
+
+void write_points(const std::filesystem::path& path, std::span<const Vec2> positions,
+                  std::span<const NamedArray> arrays) {
+  check_lengths(positions, arrays);
+  const hdf5::Id file = hdf5::create_in_memory();
+  vtkhdf::write_grid(file, positions.size(), {1, 0});  // version 1.0: a single time
+  std::vector<double> xyz;
+  for (const Vec2 p : positions) xyz.insert(xyz.end(), {p.x, p.y, 0.0});
+  hdf5::write_array<double>(file, "VTKHDF/Points", xyz, hdf5::Filter::compressed, 3);
+  const hdf5::Id data = hdf5::create_group(file, "VTKHDF/PointData");
+  for (const NamedArray& a : arrays) hdf5::write_array<double>(data, a.name, a.values, hdf5::Filter::compressed);
+  write_file_atomically(path, hdf5::image(file));
+}
+
+void write_field_csv(const std::filesystem::path& path, std::span<const Vec2> positions,
+                     std::span<const NamedArray> arrays) {
+  check_lengths(positions, arrays);
+  std::string text = "x_m,y_m";
+  for (const NamedArray& a : arrays) text += "," + a.name;
+  text += "\n";
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    text += to_text(positions[i].x) + "," + to_text(positions[i].y);
+    for (const NamedArray& a : arrays) text += "," + to_text(a.values[i]);
+    text += "\n";
+  }
+  write_file_atomically(path, text);
 }
 
 }  // namespace talus

@@ -6,6 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <vector>
 
 #include "io/hdf5.hpp"
 #include "math/angle.hpp"
@@ -15,45 +19,46 @@ namespace talus::vtkhdf {
 
 /// An array that changes with time: how the numbers of particle i come out of a frame and go back into it.
 struct Field {
-  const char* name;
+  const char* path;
   int components;
   void (*get)(const Frame& frame, std::size_t i, float* to);
   void (*set)(Frame& frame, std::size_t i, const float* from);
+
+  /// The name that viewers show: the last part of the path.
+  std::string name() const { return std::string(path).substr(std::string_view(path).rfind('/') + 1); }
 };
 
-inline void get_vector(Vec2 v, float* to) {
-  to[0] = static_cast<float>(v.x);
-  to[1] = static_cast<float>(v.y);
-  to[2] = 0.0f;
-}
-
 template <std::vector<Vec2> Frame::*member>
-constexpr Field vector_field(const char* name) {
-  return {name, 3, [](const Frame& f, std::size_t i, float* to) { get_vector((f.*member)[i], to); },
+constexpr Field vector_field(const char* path) {
+  return {path, 3,
+          [](const Frame& f, std::size_t i, float* to) {
+            to[0] = static_cast<float>((f.*member)[i].x);
+            to[1] = static_cast<float>((f.*member)[i].y);
+            to[2] = 0.0f;
+          },
           [](Frame& f, std::size_t i, const float* from) {
             (f.*member)[i] = {from[0], from[1]};
           }};
 }
 
 template <std::vector<double> Frame::*member>
-constexpr Field scalar_field(const char* name) {
-  return {name, 1, [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>((f.*member)[i]); },
+constexpr Field scalar_field(const char* path) {
+  return {path, 1, [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>((f.*member)[i]); },
           [](Frame& f, std::size_t i, const float* from) { (f.*member)[i] = *from; }};
 }
 
-inline constexpr Field points = vector_field<&Frame::position>("Points");
-
-inline constexpr std::array<Field, 7> fields = {{
-    vector_field<&Frame::velocity>("velocity"),
-    vector_field<&Frame::displacement>("displacement"),
-    scalar_field<&Frame::density>("density"),
-    scalar_field<&Frame::pressure>("pressure"),
-    {"friction_angle_deg", 1,
-     [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>(degrees(std::atan(f.tan_phi[i]))); },
+inline constexpr std::array<Field, 8> fields = {{
+    vector_field<&Frame::position>("VTKHDF/Points"),
+    vector_field<&Frame::velocity>("VTKHDF/PointData/velocity"),
+    vector_field<&Frame::displacement>("VTKHDF/PointData/displacement"),
+    scalar_field<&Frame::density>("VTKHDF/PointData/density"),
+    scalar_field<&Frame::pressure>("VTKHDF/PointData/pressure"),
+    {"VTKHDF/PointData/friction_angle_deg", 1,
+     [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>(friction_angle_deg(f.tan_phi[i])); },
      [](Frame& f, std::size_t i, const float* from) { f.tan_phi[i] = std::tan(radians(*from)); }},
-    scalar_field<&Frame::shear_rate>("shear_rate"),
+    scalar_field<&Frame::shear_rate>("VTKHDF/PointData/shear_rate"),
     // VTK's order of a symmetric tensor: XX YY ZZ XY YZ XZ.
-    {"stress", 6,
+    {"VTKHDF/PointData/stress", 6,
      [](const Frame& f, std::size_t i, float* to) {
        for (int k = 0; k < 4; ++k) to[k] = static_cast<float>(f.stress[i][k]);
        to[4] = to[5] = 0.0f;
@@ -63,13 +68,14 @@ inline constexpr std::array<Field, 7> fields = {{
      }},
 }};
 
-/// Arrays that never change, stored once: 1 for walls; the particle's number.
-inline constexpr const char* is_wall = "is_wall";
-inline constexpr const char* id = "id";
-inline constexpr std::array<const char*, 2> constant_fields = {is_wall, id};
+/// The arrays of a frame, all of one length.
+template <class F>
+auto arrays_of(F& f) {
+  return std::tie(f.position, f.displacement, f.velocity, f.density, f.pressure, f.tan_phi, f.shear_rate, f.stress);
+}
 
-/// Our own group beside VTKHDF; VTK passes it over.
-inline constexpr const char* own_group = "talus";
+/// Arrays that never change, stored once in VTKHDF/PointData: 1 for walls; the particle's number.
+inline constexpr std::array<const char*, 2> constant_fields = {"is_wall", "id"};
 
 inline constexpr std::size_t max_chunk = 65536;  ///< rows compressed together
 
@@ -83,5 +89,13 @@ void append_step(hid_t root, const Frame& frame, std::size_t step);
 void commit(hid_t root, std::size_t steps);
 /// Cuts all lists to the first `steps` steps of n particles.
 void truncate_steps(hid_t root, std::size_t steps, std::size_t n);
+
+/// The sidecar, XDMF for viewers that cannot read VTKHDF (ParaView < 5.12): light data only, hyperslabs into the arrays
+/// of the VTKHDF file. Stress comes as the scalars stress_xx, stress_yy, stress_zz, stress_xy, since readers disagree
+/// on the order of tensors.
+/// @param file       name of the VTKHDF file, which lies beside the document
+/// @param particles  points at each step
+/// @param times      of the steps [s]
+std::string xdmf_document(const std::string& file, std::size_t particles, std::span<const double> times);
 
 }  // namespace talus::vtkhdf

@@ -1,28 +1,8 @@
-#include "io/xdmf.hpp"
-
-#include "io/history.hpp"
 #include "io/vtkhdf_layout.hpp"
 #include "support/text.hpp"
 
-namespace talus {
+namespace talus::vtkhdf {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
 
 /// Columns first .. first + count - 1 of `rows` rows of an array in the file.
 struct Slab {
@@ -56,30 +36,29 @@ std::string attribute(const std::string& name, bool vector, const std::string& d
 
 }  // namespace
 
-std::string xdmf_document(const std::string& file_name, std::size_t n, std::span<const double> times) {
-  const std::string file = escaped(file_name);
+std::string xdmf_document(const std::string& file, std::size_t n, std::span<const double> times) {
   const std::size_t rows = n * times.size();
-  const std::string point_data = "/VTKHDF/PointData/";
   std::string text =
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid Name=\"snapshots\" GridType=\"Collection\" "
       "CollectionType=\"Temporal\">\n";
   for (std::size_t k = 0; k < times.size(); ++k) {
+    const auto whole = [&](const Field& f) {
+      return item(file, {"/" + std::string(f.path), "Float", rows, f.components, k * n, n, 0, f.components});
+    };
     text += "<Grid Name=\"step" + std::to_string(k) + "\" GridType=\"Uniform\"><Time Value=\"" + to_text(times[k]) +
             "\"/><Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + std::to_string(n) +
-            "\" NodesPerElement=\"1\"/>\n" + "<Geometry GeometryType=\"XYZ\">" +
-            item(file, {"/VTKHDF/Points", "Float", rows, 3, k * n, n, 0, 3}) + "</Geometry>\n";
-    for (const vtkhdf::Field& f : vtkhdf::fields)
-      if (f.components <= 3)
-        text += attribute(f.name, f.components == 3,
-                          item(file, {point_data + f.name, "Float", rows, f.components, k * n, n, 0, f.components}));
+            "\" NodesPerElement=\"1\"/>\n" + "<Geometry GeometryType=\"XYZ\">" + whole(fields[0]) + "</Geometry>\n";
+    for (const Field& f : std::span(fields).subspan(1))
+      if (f.components <= 3) text += attribute(f.name(), f.components == 3, whole(f));
+    const std::string point_data = "/VTKHDF/PointData/";
     const char* const components[] = {"stress_xx", "stress_yy", "stress_zz", "stress_xy"};
     for (int c = 0; c < 4; ++c)
       text += attribute(components[c], false, item(file, {point_data + "stress", "Float", rows, 6, k * n, n, c, 1}));
-    for (const char* name : vtkhdf::constant_fields)
+    for (const char* name : constant_fields)
       text += attribute(name, false, item(file, {point_data + name, "Int", n, 1, 0, n, 0, 1}));
     text += "</Grid>\n";
   }
   return text + "</Grid></Domain></Xdmf>\n";
 }
 
-}  // namespace talus
+}  // namespace talus::vtkhdf

@@ -1,4 +1,5 @@
-// The constitutive models that a run can choose. Included once for every instruction set.
+// Yield stress and the constitutive models that a run can choose, for every number type. Included once for every
+// instruction set.
 
 #if defined(TALUS_MATERIAL_CONSTITUTIVE_MODELS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TALUS_MATERIAL_CONSTITUTIVE_MODELS_INL
@@ -9,13 +10,91 @@
 
 #include <hwy/highway.h>
 
+#include <numbers>
 #include <type_traits>
 
-#include "material/bingham-inl.hpp"
-#include "material/elastoviscoplastic-inl.hpp"
+#include "material/material.hpp"
+#include "math/tensor-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
+
+/// gamma_dot = sqrt(2 dev(e):dev(e)): simple shear v_x(y) gives |dv_x/dy|, as Eq. 5 needs.
+/// ShearRate::paper: sqrt(2/3 dev(e):dev(e)), [Z20] Eq. 7 as printed; the yielded stress comes out sqrt(3) times
+/// larger.
+template <class Real>
+HWY_INLINE Real shear_rate(Deviator<Real> e, ShearRate norm) {
+  return sqrt(Real(norm == ShearRate::paper ? 2.0 / 3.0 : 2.0) * double_dot(e));
+}
+
+/// tau_y = c + max(p, 0) tan(phi)                                          [Z20] Eq. 5
+template <class Real>
+HWY_INLINE Real yield_stress(Real c, Real tan_phi, Real p) {
+  return fma(max(p, Real(0.0)), tan_phi, c);
+}
+
+/// What a constitutive model is told of a point.
+template <class Real>
+struct PointState {
+  Deviator<Real> e;  ///< deviatoric strain rate [1/s]
+  Real two_spin;     ///< 2 omega_xy [1/s]
+  Real gamma_dot;    ///< shear rate [1/s]
+  Real tau_y;        ///< yield stress [Pa]
+  Real eta;          ///< viscosity once it has yielded [Pa s]
+  Real two_G;        ///< twice the numerical shear modulus [Pa]
+};
+
+/// Regularised Bingham: an equivalent viscosity, large but finite where the soil does not yield, so that it creeps.
+template <class Real>
+struct RegularisedBingham {
+  Real gamma_dot_min;  ///< floor of the shear rate [1/s], > 0
+
+  explicit HWY_INLINE RegularisedBingham(const Rheology& rheology) : gamma_dot_min(rheology.gamma_dot_min) {}
+
+  /// eta' = eta + tau_y / max(gamma_dot, gamma_dot_min)                    [Z20] Eq. 6
+  HWY_INLINE Real viscosity(Real eta, Real tau_y, Real gamma_dot) const {
+    return eta + tau_y / max(gamma_dot, gamma_dot_min);
+  }
+  /// t = 2 eta' dev(e)                                                     [Z20] Eq. 10, deviator written out
+  template <class ElasticStress>
+  HWY_INLINE Deviator<Real> stress(const PointState<Real>& at, ElasticStress&&) const {
+    const Real zero(0.0), eta = viscosity(at.eta, at.tau_y, at.gamma_dot);
+    return fma(eta + eta, at.e, Deviator<Real>{zero, zero, zero});
+  }
+};
+
+/// dt/dt = omega t - t omega + 2 G dev(e): elastic rate with the Jaumann spin terms, so that a rigid rotation turns the
+/// stress without changing it.
+template <class Real>
+HWY_INLINE Deviator<Real> elastic_rate(Deviator<Real> t, Deviator<Real> e, Real two_spin, Real two_G) {
+  const Real turn = two_spin * t.xy;
+  return {fma(two_G, e.xx, turn), fms(two_G, e.yy, turn), fma(two_G, e.xy, Real(0.5) * two_spin * (t.yy - t.xx))};
+}
+
+/// Elasto-viscoplastic: rigid below the yield stress up to a numerical elasticity, viscous beyond; no creep at rest.
+template <class Real>
+struct ElastoViscoplastic {
+  /// On tau_y: the norm of Eq. 7 as printed shears at sqrt(3) tau_y, and the elastic law follows it.
+  Real yield_factor;
+
+  explicit HWY_INLINE ElastoViscoplastic(const Rheology& rheology)
+      : yield_factor(rheology.shear_rate == ShearRate::paper ? std::numbers::sqrt3 : 1.0) {}
+
+  /// t = t_elastic + 2 eta dev(e)
+  /// @param elastic  the stress that the soil keeps: value(), add(change) and set_rate(dt/dt)
+  template <class ElasticStress>
+  HWY_INLINE Deviator<Real> stress(const PointState<Real>& at, ElasticStress&& elastic) const {
+    Deviator<Real> t = elastic.value();
+    const Real limit = yield_factor * at.tau_y, size = magnitude(t);
+    if (const auto yields = size > limit; any(yields)) {
+      const Deviator<Real> change = t * select_or_zero(yields, limit / size - Real(1.0));
+      t = t + change;
+      elastic.add(change);
+    }
+    elastic.set_rate(elastic_rate(t, at.e, at.two_spin, at.two_G));
+    return fma(at.eta + at.eta, at.e, t);
+  }
+};
 
 /// Calls f(std::type_identity of the model's type). A model is constructed from Rheology and has
 /// stress(PointState, elastic stress).

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 namespace talus {
 
 /// Exponent chi of the equation of state [-]                              [Z20] Eq. 3
@@ -18,13 +20,8 @@ struct EquationOfState {
     return {rho0, rho0 * c_s * c_s / eos_exponent};
   }
 
-  /// @param rho  density [kg/m3]; @returns pressure [Pa]
-  double pressure(double rho) const;
-  /// Inverse of pressure(); p > -B [Pa].
-  double density(double p) const;
+  /// Density of pressure p > -B [Pa]; the pressure of a density is in equation_of_state-inl.hpp.
+  double density(double p) const { return rho0 * std::pow(1.0 + p / B, 1.0 / eos_exponent); }
 };
-
-/// Loose soil carries no tension: negative pressure is cut off.
-double apply_tension_cutoff(double p);
 
 }  // namespace talus

@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
-using talus::fma;  // beside those of vectors and tensors
+using talus::fma, talus::select;  // beside those of vectors and tensors
 
 template <class Real>
 HWY_INLINE Vector<Real> operator-(Vector<Real> a, Vector<Real> b) {
@@ -38,6 +38,10 @@ HWY_INLINE Vector<Real> fma(Real s, Vector<Real> a, Vector<Real> b) {
 template <class Real>
 HWY_INLINE Symmetric<Real> operator+(Symmetric<Real> a, Symmetric<Real> b) {
   return {a.xx + b.xx, a.yy + b.yy, a.xy + b.xy};
+}
+template <class Mask, class Real>
+HWY_INLINE Symmetric<Real> select(Mask where, Symmetric<Real> a, Symmetric<Real> b) {
+  return {select(where, a.xx, b.xx), select(where, a.yy, b.yy), select(where, a.xy, b.xy)};
 }
 template <class Real>
 HWY_INLINE Vector<Real> operator*(Symmetric<Real> a, Vector<Real> v) {

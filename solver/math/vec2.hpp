@@ -1,6 +1,7 @@
 #pragma once
 // Vectors of the plane.
 
+#include <algorithm>
 #include <cmath>
 
 namespace talus {
@@ -15,22 +16,11 @@ struct Vec2 {
     y += b.y;
     return *this;
   }
-  constexpr Vec2& operator-=(Vec2 b) {
-    x -= b.x;
-    y -= b.y;
-    return *this;
-  }
-  constexpr Vec2& operator*=(double s) {
-    x *= s;
-    y *= s;
-    return *this;
-  }
   constexpr bool operator==(const Vec2&) const = default;
 };
 
 constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
 constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
-constexpr Vec2 operator-(Vec2 a) { return {-a.x, -a.y}; }
 constexpr Vec2 operator*(double s, Vec2 a) { return {s * a.x, s * a.y}; }
 constexpr Vec2 operator*(Vec2 a, double s) { return s * a; }
 constexpr double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
@@ -45,6 +35,11 @@ struct Box {
   Vec2 hi;
   constexpr double width() const { return hi.x - lo.x; }
   constexpr double height() const { return hi.y - lo.y; }
+  /// Grows the box until it holds p.
+  void include(Vec2 p) {
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
+  }
   constexpr bool operator==(const Box&) const = default;
 };
 

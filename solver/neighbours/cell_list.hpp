@@ -3,7 +3,6 @@
 // are a few contiguous index ranges.
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -20,12 +19,6 @@ namespace talus {
 /// that is too far.
 class CellList {
  public:
-  /// Ranges [begin, end) of places to search, bottom row first.
-  struct Ranges {
-    std::array<std::uint32_t, 3> begin, end;
-    std::size_t count = 0;
-  };
-
   /// Sorts points into cells and remembers the order.
   /// @param x,y    coordinates [m]
   /// @param reach  largest distance that will be searched [m], > 0
@@ -39,38 +32,17 @@ class CellList {
   /// order()[k] = index before sorting of the point that must stand at place k. Apply it before searching.
   std::span<const std::uint32_t> order() const { return order_; }
 
-  /// The ranges of places that may lie within `reach` of `point`.
-  Ranges ranges(Vec2 point) const {
-    const std::int64_t cx = column(point.x), cy = row(point.y);
-    const std::int64_t x0 = cx > across ? cx - across : 0, x1 = cx + across < columns_ ? cx + across : columns_ - 1;
-    const std::int64_t y0 = cy > 1 ? cy - 1 : 0, y1 = cy + 1 < rows_ ? cy + 1 : rows_ - 1;
-    Ranges found;
-    for (std::int64_t r = y0; r <= y1; ++r) {
-      const std::uint32_t begin = starts_[static_cast<std::size_t>(r * columns_ + x0)];
-      const std::uint32_t end = starts_[static_cast<std::size_t>(r * columns_ + x1 + 1)];
-      found.begin[found.count] = begin;
-      found.end[found.count] = end;
-      found.count += begin != end;
-    }
-    return found;
-  }
-
-  /// Calls visit(begin, end) for each of them.
+  /// Calls visit(begin, end) for the ranges of places that may lie within `reach` of `point`, bottom row first.
   template <class Visit>
   void for_ranges(Vec2 point, Visit&& visit) const {
-    const Ranges found = ranges(point);
-    for (std::size_t r = 0; r < found.count; ++r) visit(found.begin[r], found.end[r]);
+    const std::int64_t x = column(point.x), y = row(point.y);
+    visit_cells(std::max<std::int64_t>(x - across, 0), std::min(x + across, columns_ - 1),
+                std::max<std::int64_t>(y - 1, 0), std::min(y + 1, rows_ - 1), visit);
   }
-
   /// Calls visit(begin, end) for the ranges of places that cover `region` [m].
   template <class Visit>
   void for_ranges(Box region, Visit&& visit) const {
-    const std::int64_t x0 = column(region.lo.x), x1 = column(region.hi.x), y1 = row(region.hi.y);
-    for (std::int64_t r = row(region.lo.y); r <= y1; ++r) {
-      const std::uint32_t begin = starts_[static_cast<std::size_t>(r * columns_ + x0)];
-      const std::uint32_t end = starts_[static_cast<std::size_t>(r * columns_ + x1 + 1)];
-      if (begin != end) visit(begin, end);
-    }
+    visit_cells(column(region.lo.x), column(region.hi.x), row(region.lo.y), row(region.hi.y), visit);
   }
 
   /// Rows of cells; places of one row are contiguous.
@@ -83,6 +55,15 @@ class CellList {
 
  private:
   static constexpr std::int64_t across = 4;  ///< cells to a reach along x
+
+  template <class Visit>
+  void visit_cells(std::int64_t x0, std::int64_t x1, std::int64_t y0, std::int64_t y1, Visit&& visit) const {
+    for (std::int64_t r = y0; r <= y1; ++r) {
+      const std::uint32_t begin = starts_[static_cast<std::size_t>(r * columns_ + x0)];
+      const std::uint32_t end = starts_[static_cast<std::size_t>(r * columns_ + x1 + 1)];
+      if (begin != end) visit(begin, end);
+    }
+  }
 
   // Clamped to the grid: points outside it fall into the border cells, which keeps every search right.
   std::int64_t column(double x) const { return clamp((x - box_.lo.x) * across * inverse_reach_, columns_); }

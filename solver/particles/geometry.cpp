@@ -55,17 +55,17 @@ Box bounding_box(std::span<const SlidePart> slide) {
   return box;
 }
 
-double cover(std::span<const Vec2> outline, Vec2 point) {
+double thickness_above(std::span<const Vec2> outline, Vec2 point) {
   const std::vector<double> y = crossings(outline, point.x);
   double length = 0.0;
   for (std::size_t k = 0; k + 1 < y.size(); k += 2) length += std::max(0.0, y[k + 1] - std::max(y[k], point.y));
   return length;
 }
 
-double overburden(std::span<const SlidePart> slide, std::span<const Material> materials, Vec2 point) {
+double mass_above(std::span<const SlidePart> slide, std::span<const Material> materials, Vec2 point) {
   double mass = 0.0;
   for (const SlidePart& part : slide)
-    mass += materials[static_cast<std::size_t>(part.material)].rho0 * cover(part.outline, point);
+    mass += materials[static_cast<std::size_t>(part.material)].rho0 * thickness_above(part.outline, point);
   return mass;
 }
 
@@ -84,7 +84,7 @@ Vec2 Polyline::at(double s) const {
   return vertices.back();
 }
 
-Foot nearest(const Polyline& line, Vec2 point) {
+Projection project(Vec2 point, const Polyline& line) {
   double best = std::numeric_limits<double>::infinity();
   Vec2 foot, normal;
   for (std::size_t s = 0; s < line.segments(); ++s) {
@@ -103,6 +103,13 @@ Foot nearest(const Polyline& line, Vec2 point) {
   return {foot, std::copysign(std::sqrt(best), dot(point - foot, normal))};
 }
 
+double signed_distance(Vec2 point, std::span<const Polyline> lines) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Polyline& line : lines)
+    if (const double d = project(point, line).distance; std::abs(d) < std::abs(nearest)) nearest = d;
+  return nearest;
+}
+
 Polyline offset_into_rock(const Polyline& line, double offset) {
   Polyline moved{{}, line.closed};
   const std::size_t n = line.vertices.size();
@@ -118,20 +125,26 @@ Polyline offset_into_rock(const Polyline& line, double offset) {
   return moved;
 }
 
-Polyline wall_line(const Terrain& terrain, double dx, Placement placement) {
+Polyline ground_line(const Terrain& terrain) {
   Polyline line{terrain.bed, terrain.closed};
-  if (!terrain.closed) {
+  if (!terrain.closed && !terrain.bed.empty()) {
     if (terrain.left_wall) line.vertices.insert(line.vertices.begin(), {terrain.bed.front().x, terrain.wall_top});
     if (terrain.right_wall) line.vertices.push_back({terrain.bed.back().x, terrain.wall_top});
   }
-  return placement == Placement::nodes ? offset_into_rock(line, 0.5 * dx) : line;
+  return line;
 }
 
-std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, const Terrain& terrain, double dx,
+std::vector<Polyline> wall_lines(std::span<const Boundary> boundaries, double dx, Placement placement) {
+  std::vector<Polyline> lines;
+  for (const Boundary& b : boundaries)
+    lines.push_back(placement == Placement::nodes ? offset_into_rock(b.line, 0.5 * dx) : b.line);
+  return lines;
+}
+
+std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<const Polyline> walls, double dx,
                                   Placement placement) {
   const bool nodes = placement == Placement::nodes;
   const Box box = bounding_box(slide);
-  const Polyline wall = wall_line(terrain, dx, placement);
   const double shift = nodes ? 0.0 : 0.5, tolerance = 1e-6 * dx;
   const auto columns = static_cast<std::int64_t>(std::floor(box.width() / dx + 1e-6)) + 1;
   const auto rows = static_cast<std::int64_t>(std::floor(box.height() / dx + 1e-6)) + 1;
@@ -148,10 +161,29 @@ std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, const Terrai
                                : x;
       for (std::size_t k = 0; k < slide.size(); ++k) {
         if (!bg::covered_by(Point(probe.x, probe.y), polygons[k])) continue;
-        if (nearest(wall, x).distance >= 0.5 * dx - tolerance) points.push_back({x, slide[k].material});
+        if (signed_distance(x, walls) >= 0.5 * dx - tolerance) points.push_back({x, slide[k].material});
         break;
       }
     }
+  return points;
+}
+
+std::vector<WallPoint> fill_walls(const Polyline& wall, double dx, int layers, std::int32_t boundary) {
+  std::vector<WallPoint> points;
+  for (int k = 0; k < layers; ++k) {
+    const double depth = (k + 0.5) * dx;
+    const Polyline row = offset_into_rock(wall, depth);
+    const double length = row.length();
+    const auto n = static_cast<std::int64_t>(std::max(1.0, std::round(length / dx)));
+    const double first = wall.closed ? 0.0 : 0.5;  // a ring starts on a corner, an open row half a spacing in
+    for (std::int64_t i = 0; i < n; ++i) {
+      const Vec2 x = row.at((static_cast<double>(i) + first) * length / static_cast<double>(n));
+      const Projection foot = project(x, wall);
+      // Where a sharp ridge folds the row over itself, the particles that came too near the surface are dropped.
+      if (-foot.distance < depth - 0.25 * dx) continue;
+      points.push_back({x, (-1.0 / foot.distance) * (foot.point - x), -foot.distance, boundary});
+    }
+  }
   return points;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
-// The shape of the problem as a person describes it: terrain and slide.
+// The shape of the problem as a person describes it: terrain, boundaries and slide.
 
+#include <string>
 #include <vector>
 
 #include "math/vec2.hpp"
@@ -17,6 +18,31 @@ struct Terrain {
   double wall_top = 0.0;    ///< y of the top of the end walls [m]
   double left_boundary = 0.0;  ///< x from which influence zones are measured [m]
   bool operator==(const Terrain&) const = default;
+};
+
+/// A polyline with soil on its left side as it is walked, rock on its right.
+struct Polyline {
+  std::vector<Vec2> vertices;  ///< [m], at least 2; closed: the first is not repeated
+  bool closed = false;
+
+  std::size_t segments() const { return closed ? vertices.size() : vertices.size() - 1; }
+  Vec2 start(std::size_t s) const { return vertices[s]; }
+  Vec2 end(std::size_t s) const { return vertices[s + 1 == vertices.size() ? 0 : s + 1]; }
+  double length() const;
+  /// Point at arc length s from the first vertex [m].
+  Vec2 at(double s) const;
+  bool operator==(const Polyline&) const = default;
+};
+
+enum class WallSlip { no_slip, friction, free_slip };  ///< friction: the soil's own, or a smaller angle of the wall
+
+/// A rigid boundary of the flow.
+struct Boundary {
+  std::string name = "bed";
+  Polyline line;
+  WallSlip slip = WallSlip::no_slip;
+  double phi = 0.0;  ///< friction angle of the wall, used with WallSlip::friction [rad], in [0, pi/2)
+  bool operator==(const Boundary&) const = default;
 };
 
 /// A closed outline of soil of one material. Outlines of one slide do not overlap.

@@ -18,6 +18,7 @@ struct Soil {
   std::vector<double> txx, tyy, txy;  ///< deviatoric stress of the elastic law [Pa]
   std::vector<double> m;              ///< mass [kg/m]
   std::vector<double> tan_phi;        ///< tangent of the friction angle [-]
+  std::vector<double> c;              ///< cohesion [Pa]
   // What evaluations in double precision write; empty where the vectorised loops run, which keep their own.
   std::vector<double> ax, ay;             ///< acceleration of the last evaluation [m/s2]
   std::vector<double> drho;               ///< rate of density [kg/m3/s]
@@ -50,6 +51,7 @@ void for_each_state(S& s, F&& f) {
   f("txy", s.txy);
   f("m", s.m);
   f("tan_phi", s.tan_phi);
+  f("c", s.c);
 }
 /// Rates of the last evaluation: the leapfrog predicts with them.
 template <class S, class F>
@@ -72,13 +74,14 @@ void for_each_derived(S& s, F&& f) {
 }
 /// Wall particles; fixed, sorted by cell once.
 struct WallParticles {
-  std::vector<double> x, y;           ///< position [m]
-  std::vector<double> nx, ny;         ///< unit normal of the wall, towards the soil
-  std::vector<double> depth;          ///< distance to the wall line [m]
-  std::vector<double> p;              ///< pressure extrapolated from the soil [Pa]
-  std::vector<double> sxx, syy, sxy;  ///< stress extrapolated from the soil [Pa]
-  std::vector<double> compression;    ///< rho/rho0 of the soil extrapolated to here [-]; 0 where no soil is near
-  double volume = 0.0;                ///< of each particle [m3/m]
+  std::vector<double> x, y;            ///< position [m]
+  std::vector<double> nx, ny;          ///< unit normal of the wall, towards the soil
+  std::vector<double> depth;           ///< distance to the wall line [m]
+  std::vector<double> p;               ///< pressure extrapolated from the soil [Pa]
+  std::vector<double> sxx, syy, sxy;   ///< stress extrapolated from the soil [Pa]
+  std::vector<double> density_ratio;   ///< rho/rho0 of the soil extrapolated to here [-]; 0 where no soil is near
+  std::vector<std::int32_t> boundary;  ///< index of the boundary that each belongs to
+  double volume = 0.0;                 ///< of each particle [m3/m]
 
   std::size_t size() const { return x.size(); }
   Vec2 position(std::size_t j) const { return {x[j], y[j]}; }
@@ -93,7 +96,7 @@ void for_each_wall_real(W& w, F&& f) {
   f("wall_sxx", w.sxx);
   f("wall_syy", w.syy);
   f("wall_sxy", w.sxy);
-  f("wall_compression", w.compression);
+  f("wall_density_ratio", w.density_ratio);
 }
 
 }  // namespace talus

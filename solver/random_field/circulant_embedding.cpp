@@ -12,8 +12,7 @@ namespace talus {
 namespace {
 
 constexpr double clip_tolerance = 1e-8;  // largest error of the covariance, relative to C(0), that clipping may make
-
-constexpr double hair = 1e-9;  // parts of a spacing that count as rounding
+constexpr double rounding = 1e-9;        // parts of a spacing that count as rounding
 
 using Spectrum = std::vector<std::complex<double>>;
 
@@ -49,9 +48,7 @@ double clipping_error(const std::vector<double>& eigen) {
 }
 
 double default_spacing(const FieldSpec& spec, double dx) {
-  const double ell = spec.direction == FieldDirection::x   ? spec.ell_x
-                     : spec.direction == FieldDirection::y ? spec.ell_y
-                                                           : std::min(spec.ell_x, spec.ell_y);
+  const double ell = !spec.along_y() ? spec.ell_x : !spec.along_x() ? spec.ell_y : std::min(spec.ell_x, spec.ell_y);
   return dx / (2 * std::max(1.0, std::ceil(2 * dx / ell)));
 }
 
@@ -65,17 +62,32 @@ void check_size(double nodes) {
 CirculantAxis axis(double lo, double hi, double ell, bool varies, const FieldSpec& spec, double dx, double anchor) {
   if (!varies) return CirculantAxis::constant();
   const double spacing = spec.grid_spacing.value_or(default_spacing(spec, dx));
-  const double first = anchor + std::floor((lo - anchor) / spacing + hair) * spacing;
+  const double first = anchor + std::floor((lo - anchor) / spacing + rounding) * spacing;
   return {first, hi, spacing, {ell, spec.cell_average ? dx : 0.0}};
 }
 
 }  // namespace
 
+// With G'' = exp(-|s|/ell), G = ell |s| + ell^2 exp(-|s|/ell), the average is (G(d+h) - 2 G(d) + G(d-h)) / h^2. The
+// straight parts of G cancel for d >= h; what is left of the exponentials is a sinh.
+double ExponentialCovariance::operator()(double d) const {
+  d = std::abs(d);
+  const double h = cell;
+  if (h == 0) return std::exp(-d / ell);
+  if (d >= h) {
+    const double s = std::sinh(h / (2 * ell)) * 2 * ell / h;
+    return s * s * std::exp(-d / ell);
+  }
+  const double straight = 2 * (h - d) / ell;
+  const double curved = std::exp(-(d + h) / ell) - 2 * std::exp(-d / ell) + std::exp(-(h - d) / ell);
+  return (ell / h) * (ell / h) * (straight + curved);
+}
+
 // The exponential covariance is convex, so the smallest embedding is nonnegative definite (Dietrich & Newsam 1997). The
 // averaged one is not; there the period grows until the kink at half of it has faded.
 CirculantAxis::CirculantAxis(double lo, double hi, double spacing, const ExponentialCovariance& covariance)
     : lo_(lo), spacing_(spacing) {
-  const double intervals = std::max(1.0, std::ceil((hi - lo) / spacing - hair));
+  const double intervals = std::max(1.0, std::ceil((hi - lo) / spacing - rounding));
   check_size(2 * intervals);
   nodes_ = static_cast<std::size_t>(intervals) + 1;
   variance_ = covariance(0);
@@ -110,8 +122,8 @@ CirculantAxis::Stencil CirculantAxis::stencil(double x) const {
 }
 
 CirculantEmbedding::CirculantEmbedding(const FieldSpec& spec, Box domain, double dx, Vec2 anchor)
-    : x_(axis(domain.lo.x, domain.hi.x, spec.ell_x, spec.direction != FieldDirection::y, spec, dx, anchor.x)),
-      y_(axis(domain.lo.y, domain.hi.y, spec.ell_y, spec.direction != FieldDirection::x, spec, dx, anchor.y)) {
+    : x_(axis(domain.lo.x, domain.hi.x, spec.ell_x, spec.along_x(), spec, dx, anchor.x)),
+      y_(axis(domain.lo.y, domain.hi.y, spec.ell_y, spec.along_y(), spec, dx, anchor.y)) {
   check_size(static_cast<double>(x_.period()) * static_cast<double>(y_.period()));
 }
 

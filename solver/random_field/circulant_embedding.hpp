@@ -6,13 +6,23 @@
 #include <vector>
 
 #include "math/vec2.hpp"
-#include "random_field/covariance.hpp"
 #include "random_field/field_spec.hpp"
 
 namespace talus {
 
 /// More coefficients than this are refused (160 MB of them).
 inline constexpr double max_grid = 2e7;
+
+/// Covariance of a field along one axis; that of two axes is the product of two of these.
+/// C(d) = exp(-|d| / ell), or the covariance of that field's moving average over `cell`:
+/// C(d) = (1/h^2) integral_{-h}^{h} (h - |s|) exp(-|d + s| / ell) ds with h = cell (Vanmarcke 1983).
+struct ExponentialCovariance {
+  double ell;         ///< correlation length [m], > 0
+  double cell = 0.0;  ///< length that the field is averaged over [m]; 0: the field at a point
+
+  /// @param d  lag [m]
+  double operator()(double d) const;
+};
 
 /// A stationary field on equally spaced nodes of one axis, as the leading part of a periodic field: its covariance
 /// matrix is a block of a circulant one, whose symmetric square root the FFT applies.
@@ -57,7 +67,7 @@ class CirculantAxis {
 /// field loses 21 % in the middle of a cell, 14 % on average; averages over a few cells hardly change.
 class CirculantEmbedding {
  public:
-  /// @param spec    what is wanted; its ranges have been checked
+  /// @param spec    what is asked for; its ranges have been checked
   /// @param domain  rectangle that the grid covers [m]; points outside the grid take the value at its nearest point
   /// @param dx      particle spacing [m]: side of the cells of `cell_average`, twice the largest default grid spacing
   /// @param anchor  a point that is a node, inside the domain or not [m]; particles stand at whole halves of dx from it

@@ -1,7 +1,6 @@
 #pragma once
 // What random field of the friction angle a study asks for.
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -21,7 +20,7 @@ struct FieldSpec {
   double ell_x = 1.0;             ///< correlation length along x [m], > 0 (half the scale of fluctuation)
   double ell_y = 1.0;             ///< correlation length along y [m], > 0
   std::optional<double> mu = {};  ///< mean of ln(tan phi) [-]; unset: ln(tan phi) of each particle's material
-  double sigma = 0.0;             ///< standard deviation of ln(tan phi) [-]; a negative one mirrors the draws
+  double sigma = 0.0;             ///< standard deviation of ln(tan phi) [-]; a negative one changes the sign of Z
   FieldSampler sampler = FieldSampler::karhunen_loeve;
   Truncation truncation = Truncation::largest;
   int terms = 5;                 ///< M of [Z20] Eq. 11, >= 1; for `largest` and `diagonal`
@@ -33,6 +32,8 @@ struct FieldSpec {
   /// Grid of the circulant embedding [m]; unset: dx/2, or the largest whole fraction of it that is at most min(ell)/4.
   /// The particles that fill a slide then lie on nodes.
   std::optional<double> grid_spacing = {};
+  bool along_x() const { return direction != FieldDirection::y; }  ///< whether the field varies along x
+  bool along_y() const { return direction != FieldDirection::x; }
   bool operator==(const FieldSpec&) const = default;
 };
 

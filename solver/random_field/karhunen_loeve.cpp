@@ -37,8 +37,8 @@ std::vector<std::size_t> sorted(std::span<const Vec2> points) {
 }  // namespace
 
 KarhunenLoeve::KarhunenLoeve(const FieldSpec& spec, Box domain, double dx)
-    : x_(axis(domain.lo.x, domain.hi.x, spec.ell_x, spec.direction != FieldDirection::y, spec.root_intervals)),
-      y_(axis(domain.lo.y, domain.hi.y, spec.ell_y, spec.direction != FieldDirection::x, spec.root_intervals)),
+    : x_(axis(domain.lo.x, domain.hi.x, spec.ell_x, spec.along_x(), spec.root_intervals)),
+      y_(axis(domain.lo.y, domain.hi.y, spec.ell_y, spec.along_y(), spec.root_intervals)),
       pairs_(truncate(spec, x_, y_)) {
   const double cell = spec.cell_average ? dx : 0.0;
   for (const ModePair& pair : pairs_)

@@ -6,16 +6,15 @@
 #include <vector>
 
 #include "math/vec2.hpp"
-#include "random_field/exponential_modes.hpp"
 #include "random_field/field_spec.hpp"
-#include "random_field/truncation.hpp"
+#include "random_field/modes.hpp"
 
 namespace talus {
 
 /// A standard Gaussian field on a rectangle, expanded in products of one-dimensional modes.
 class KarhunenLoeve {
  public:
-  /// @param spec    what is wanted; its ranges have been checked
+  /// @param spec    what is asked for; its ranges have been checked
   /// @param domain  where the modes are solved [m]
   /// @param dx      side of the cells that `spec.cell_average` averages over [m]
   /// @throws ConfigError when the variance share takes too many modes

@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
-#include "random_field/circulant_embedding.hpp"
-#include "random_field/karhunen_loeve.hpp"
 #include "random_field/stream.hpp"
 #include "support/error.hpp"
 
@@ -22,7 +18,7 @@ bool positive(double value) { return std::isfinite(value) && value > 0; }
 
 /// Every fault of a specification that the samplers could not work with.
 std::vector<Fault> faults(const FieldSpec& spec, Box domain, double dx) {
-  const bool along_x = spec.direction != FieldDirection::y, along_y = spec.direction != FieldDirection::x;
+  const bool along_x = spec.along_x(), along_y = spec.along_y();
   const bool karhunen_loeve = spec.sampler == FieldSampler::karhunen_loeve;
   const bool by_share = spec.truncation == Truncation::variance_share;
   std::vector<Fault> all;
@@ -52,42 +48,15 @@ Sampler make_sampler(const FieldSpec& spec, Box slide_box, double dx) {
 
 }  // namespace
 
-struct RandomField::Impl {
-  Sampler sampler;
-  std::vector<double> given;  ///< spec.xi
-
-  template <class F>
-  auto visit(F&& f) const {
-    return std::visit(std::forward<F>(f), sampler);
-  }
-};
-
 RandomField::RandomField(const FieldSpec& spec, Box slide_box, double dx)
-    : impl_(std::make_unique<Impl>(Impl{make_sampler(spec, slide_box, dx), spec.xi})) {
-  if (spec.xi.empty() || spec.xi.size() == terms()) return;
-  std::ostringstream text;
-  text << "has " << spec.xi.size() << " coefficients, the field takes " << terms();
-  throw ConfigError("/random_field/xi", text.str());
-}
-
-RandomField::~RandomField() = default;
-RandomField::RandomField(RandomField&&) noexcept = default;
-RandomField& RandomField::operator=(RandomField&&) noexcept = default;
-
-std::size_t RandomField::terms() const {
-  return impl_->visit([](const auto& sampler) { return sampler.terms(); });
-}
-
-double RandomField::captured_variance() const {
-  return impl_->visit([](const auto& sampler) { return sampler.captured_variance(); });
-}
-
-double RandomField::variance() const {
-  return impl_->visit([](const auto& sampler) { return sampler.variance(); });
+    : sampler_(make_sampler(spec, slide_box, dx)), given_(spec.xi) {
+  if (given_.empty() || given_.size() == terms()) return;
+  throw ConfigError("/random_field/xi", "has " + std::to_string(given_.size()) + " coefficients, the field takes " +
+                                            std::to_string(terms()));
 }
 
 std::vector<double> RandomField::draw(std::uint64_t seed, std::uint64_t realization) const {
-  if (!impl_->given.empty()) return impl_->given;
+  if (!given_.empty()) return given_;
   std::vector<double> xi(terms());
   for (std::size_t k = 0; k < xi.size(); ++k) xi[k] = standard_normal(seed, realization, static_cast<std::uint32_t>(k));
   return xi;
@@ -96,7 +65,7 @@ std::vector<double> RandomField::draw(std::uint64_t seed, std::uint64_t realizat
 std::vector<double> RandomField::draw_stratified(std::uint64_t seed, std::uint64_t realizations,
                                                  std::uint64_t realization, std::size_t modes) const {
   std::vector<double> xi = draw(seed, realization);
-  if (!impl_->given.empty()) return xi;
+  if (!given_.empty()) return xi;
   const auto leading = stratified_normals(seed, realizations, realization, std::min(modes, xi.size()));
   std::copy(leading.begin(), leading.end(), xi.begin());
   return xi;
@@ -104,7 +73,20 @@ std::vector<double> RandomField::draw_stratified(std::uint64_t seed, std::uint64
 
 std::vector<double> RandomField::gaussian(std::span<const Vec2> points, std::span<const double> xi) const {
   if (xi.size() != terms()) throw std::invalid_argument("RandomField::gaussian: xi does not have terms() entries");
-  return impl_->visit([&](const auto& sampler) { return sampler.gaussian(points, xi); });
+  return std::visit([&](const auto& sampler) { return sampler.gaussian(points, xi); }, sampler_);
+}
+
+LogParameters log_parameters(Moments moments) {
+  const double variance = std::log1p(moments.cov * moments.cov);
+  return {.mu = std::log(moments.mean) - variance / 2, .sigma = std::sqrt(variance)};
+}
+
+std::vector<double> lognormal(std::span<const double> gaussian, std::span<const double> mu, double sigma) {
+  if (mu.size() != 1 && mu.size() != gaussian.size())
+    throw std::invalid_argument("lognormal: mu is one value, or one per point");
+  std::vector<double> value(gaussian.size());
+  for (std::size_t i = 0; i < value.size(); ++i) value[i] = std::exp(mu[mu.size() == 1 ? 0 : i] + sigma * gaussian[i]);
+  return value;
 }
 
 }  // namespace talus

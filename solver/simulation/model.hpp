@@ -29,7 +29,8 @@ struct TimeControl {
 
 /// A deterministic problem in SI units and radians. `case/` makes it from JSON.
 struct Model {
-  Terrain terrain;
+  Terrain terrain;                   ///< what is measured from and drawn; the flow sees the boundaries
+  std::vector<Boundary> boundaries;  ///< at least one: the ground_line() of the terrain
   std::vector<SlidePart> slide;
   std::vector<Material> materials;  ///< at least one
   double dx = 0.1;                  ///< particle spacing [m], > 0

@@ -9,6 +9,7 @@ NeighbourUpkeep::NeighbourUpkeep(WallParticles& walls, double h, double dx) : h_
   cells_.walls.build(walls.x, walls.y, 2.0 * h);
   for (auto* array : {&walls.x, &walls.y, &walls.nx, &walls.ny, &walls.depth})
     permute(*array, cells_.walls.order(), scratch_);
+  permute(walls.boundary, cells_.walls.order(), scratch_);
 }
 
 void NeighbourUpkeep::prepare(Soil& soil, const WallParticles& walls, Flow& flow, double dt, double max_speed) {

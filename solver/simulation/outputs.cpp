@@ -39,7 +39,7 @@ Frame Simulation::frame() const {
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const std::size_t k = soil_.size() + w;
     f.position[k] = walls_.position(w);
-    f.density[k] = model_.materials.front().rho0 * std::max(1.0, walls_.compression[w]);
+    f.density[k] = model_.materials.front().rho0 * std::max(1.0, walls_.density_ratio[w]);
     f.pressure[k] = walls_.p[w];
     f.stress[k] = stress_components(walls_.stress(w), walls_.p[w]);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <string>
 
 #include "support/error.hpp"
@@ -12,15 +13,17 @@ namespace talus {
 ParticlePlan plan_particles(const Model& model) {
   double estimate = 0.0;
   for (const SlidePart& part : model.slide) estimate += area(part.outline) / (model.dx * model.dx);
-  const Polyline wall = wall_line(model.terrain, model.dx, model.placement);
-  estimate += model.walls.layers * wall.length() / model.dx;
+  const std::vector<Polyline> walls = wall_lines(model.boundaries, model.dx, model.placement);
+  for (const Polyline& wall : walls) estimate += model.walls.layers * wall.length() / model.dx;
   if (estimate > static_cast<double>(model.max_particles))
     throw ConfigError("/particle_spacing_m", "about " + std::to_string(static_cast<std::int64_t>(estimate)) +
                                                  " particles, more than the limit of " +
                                                  std::to_string(model.max_particles) +
                                                  " (max_particles); use a larger spacing");
-  ParticlePlan plan{fill_slide(model.slide, model.terrain, model.dx, model.placement),
-                    fill_walls(wall, model.dx, model.walls.layers)};
+  ParticlePlan plan{fill_slide(model.slide, walls, model.dx, model.placement), {}};
+  for (std::size_t b = 0; b < walls.size(); ++b)
+    std::ranges::move(fill_walls(walls[b], model.dx, model.walls.layers, static_cast<std::int32_t>(b)),
+                      std::back_inserter(plan.walls));
   if (plan.soil.empty())
     throw ConfigError("/particle_spacing_m", "no soil particle fits into the slide; use a smaller spacing");
   return plan;
@@ -28,8 +31,11 @@ ParticlePlan plan_particles(const Model& model) {
 
 SoilProperties material_properties(const Model& model, const ParticlePlan& plan) {
   SoilProperties properties;
-  for (const SoilPoint& point : plan.soil)
-    properties.tan_phi.push_back(std::tan(model.materials[static_cast<std::size_t>(point.material)].phi));
+  for (const SoilPoint& point : plan.soil) {
+    const Material& material = model.materials[static_cast<std::size_t>(point.material)];
+    properties.tan_phi.push_back(std::tan(material.phi));
+    properties.c.push_back(material.c);
+  }
   return properties;
 }
 
@@ -53,7 +59,8 @@ FlowConstants flow_constants(const Model& model) {
           model.rheology,
           model.numerics,
           model.walls,
-          constitutive_parameters(model.materials, model.rheology, c_s)};
+          constitutive_parameters(model.materials, model.rheology, c_s),
+          wall_friction(model.boundaries)};
 }
 
 StepBounds step_bounds(const Model& model, const FlowConstants& k) {
@@ -78,6 +85,7 @@ Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& p
   Soil soil;
   for_each_state(soil, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
   soil.tan_phi = properties.tan_phi;
+  soil.c = properties.c;
   soil.x_sorted.resize(points.size());
   soil.y_sorted.resize(points.size());
   soil.material.resize(points.size());
@@ -85,7 +93,7 @@ Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& p
   soil.n_active = points.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto material = static_cast<std::size_t>(points[i].material);
-    const double p = loaded ? overburden(model.slide, model.materials, points[i].x) * std::abs(model.g.y) : 0.0;
+    const double p = loaded ? mass_above(model.slide, model.materials, points[i].x) * std::abs(model.g.y) : 0.0;
     soil.x[i] = points[i].x.x;
     soil.y[i] = points[i].x.y;
     soil.rho[i] = k.soils[material].eos.density(p);
@@ -105,6 +113,7 @@ WallParticles make_walls(const std::vector<WallPoint>& points, double dx) {
     walls.nx.push_back(w.n.x);
     walls.ny.push_back(w.n.y);
     walls.depth.push_back(w.depth);
+    walls.boundary.push_back(w.boundary);
   }
   for_each_wall_real(walls, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
   return walls;

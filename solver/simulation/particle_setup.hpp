@@ -6,7 +6,6 @@
 #include "integrate/time_step.hpp"
 #include "particles/geometry.hpp"
 #include "particles/particles.hpp"
-#include "particles/walls.hpp"
 #include "simulation/model.hpp"
 #include "sph/flow_constants.hpp"
 
@@ -21,10 +20,10 @@ struct ParticlePlan {
 /// @throws ConfigError when there is no soil particle, or more particles than Model::max_particles
 ParticlePlan plan_particles(const Model& model);
 
-/// Properties of the soil particles of a plan, in its order. Cohesion and viscosity belong to the material: they do not
-/// vary within one.
+/// Properties of the soil particles of a plan, in its order: those that may vary within a material.
 struct SoilProperties {
   std::vector<double> tan_phi;  ///< tangent of the friction angle [-], >= 0
+  std::vector<double> c;        ///< cohesion [Pa], >= 0
 };
 /// The properties that the materials give.
 SoilProperties material_properties(const Model& model, const ParticlePlan& plan);

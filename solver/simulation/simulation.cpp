@@ -31,7 +31,7 @@ Simulation::Simulation(const Model& model, const ParticlePlan& plan, const SoilP
       flow_(make_flow(flow_constants(model), soil_)),
       neighbours_(walls_, constants().h, model.dx),
       starts_(plan.soil, bounding_box(model.slide)),
-      crossings_(wall_line(model.terrain, model.dx, model.placement), plan.soil.size()),
+      crossings_(wall_lines(model.boundaries, model.dx, model.placement), plan.soil.size()),
       rest_rule_(model.time.stop_at_rest),
       bounds_(step_bounds(model, constants())),
       max_acceleration_(norm(model.g)) {}

@@ -7,13 +7,11 @@
 #include "integrate/flow.hpp"
 #include "simulation/checkpoint_state.hpp"
 #include "simulation/frame.hpp"
+#include "simulation/memory.hpp"
 #include "simulation/model.hpp"
 #include "simulation/neighbour_upkeep.hpp"
 #include "simulation/particle_setup.hpp"
-#include "simulation/rest_rule.hpp"
 #include "simulation/run_result.hpp"
-#include "simulation/starting_positions.hpp"
-#include "simulation/wall_crossings.hpp"
 
 namespace talus {
 

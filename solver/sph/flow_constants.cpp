@@ -1,5 +1,8 @@
 #include "sph/flow_constants.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace talus {
 
 std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Material>& materials,
@@ -7,10 +10,22 @@ std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Ma
   std::vector<ConstitutiveParameters> soils;
   for (const Material& m : materials)
     soils.push_back({.eos = EquationOfState::weakly_compressible(m.rho0, c_s),
-                     .c = m.c,
                      .eta = m.eta,
                      .G = rheology.G.value_or(0.1 * m.rho0 * c_s * c_s)});
   return soils;
+}
+
+bool any_friction(const FlowConstants& k) {
+  return std::ranges::any_of(k.boundaries, [](const WallFriction& b) { return b.slip == WallSlip::friction; });
+}
+
+std::vector<WallFriction> wall_friction(std::span<const Boundary> boundaries) {
+  std::vector<WallFriction> walls;
+  for (const Boundary& b : boundaries) {
+    walls.push_back({.slip = b.slip});
+    if (b.slip == WallSlip::friction) walls.back().tan_phi = std::tan(b.phi);
+  }
+  return walls;
 }
 
 }  // namespace talus

@@ -1,11 +1,14 @@
 #pragma once
 // What a run keeps constant and every loop sees.
 
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "material/equation_of_state.hpp"
 #include "material/material.hpp"
 #include "math/vec2.hpp"
+#include "particles/geometry_input.hpp"
 #include "sph/numerics.hpp"
 
 namespace talus {
@@ -13,9 +16,14 @@ namespace talus {
 /// What the constitutive models need to know of a material.
 struct ConstitutiveParameters {
   EquationOfState eos;
-  double c;    ///< cohesion [Pa]
   double eta;  ///< viscosity once it has yielded [Pa s]
   double G;    ///< numerical shear modulus of the elastic law [Pa]
+};
+
+/// What the wall law needs to know of a boundary.
+struct WallFriction {
+  WallSlip slip = WallSlip::no_slip;
+  double tan_phi = std::numeric_limits<double>::infinity();  ///< with WallSlip::friction; otherwise unbounded [-]
 };
 
 /// Constants of a run that every pair sees.
@@ -28,10 +36,16 @@ struct FlowConstants {
   Numerics numerics;
   Walls walls;
   std::vector<ConstitutiveParameters> soils;  ///< by material
+  std::vector<WallFriction> boundaries;       ///< by boundary
 };
 
 /// @param c_s  speed of sound [m/s]
 std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Material>& materials,
                                                             const Rheology& rheology, double c_s);
+
+/// Whether a boundary has a friction angle of its own.
+bool any_friction(const FlowConstants& k);
+
+std::vector<WallFriction> wall_friction(std::span<const Boundary> boundaries);
 
 }  // namespace talus

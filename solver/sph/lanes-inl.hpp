@@ -59,45 +59,46 @@ struct Lanes {
   friend HWY_INLINE Mask operator==(Lanes a, Lanes b) { return {hn::Eq(a.v, b.v)}; }
 };
 
-/// The first `count` of the doubles at `from`, rounded.
-HWY_INLINE Lanes load_doubles(const double* HWY_RESTRICT from, std::size_t count) {
+/// The same in double precision: lower and upper half of the lanes.
+struct Wide {
+  hn::Vec<Doubles> lo, hi;
+};
+/// Reads the first `count` doubles at `from`; the other lanes are zero.
+HWY_INLINE Wide load(const double* HWY_RESTRICT from, std::size_t count) {
   const Doubles dd;
-  const HalfD half;
   HWY_ALIGN double buffer[lanes] = {};
   if (count < lanes) {
     for (std::size_t l = 0; l < count; ++l) buffer[l] = from[l];
     from = buffer;
   }
-  return Lanes(
-      hn::Combine(D(), hn::DemoteTo(half, hn::LoadU(dd, from + lanes / 2)), hn::DemoteTo(half, hn::LoadU(dd, from))));
+  return {hn::LoadU(dd, from), hn::LoadU(dd, from + lanes / 2)};
 }
-
-/// Writes the first `count` lanes to the doubles at `to`.
-HWY_INLINE void store_doubles(Lanes value, double* HWY_RESTRICT to, std::size_t count) {
+/// Writes the first `count` lanes to `to`.
+HWY_INLINE void store(Wide v, double* HWY_RESTRICT to, std::size_t count) {
   const Doubles dd;
   if (count == lanes) {
-    hn::StoreU(hn::PromoteTo(dd, hn::LowerHalf(value.v)), dd, to);
-    hn::StoreU(hn::PromoteTo(dd, hn::UpperHalf(HalfD(), value.v)), dd, to + lanes / 2);
+    hn::StoreU(v.lo, dd, to);
+    hn::StoreU(v.hi, dd, to + lanes / 2);
     return;
   }
-  HWY_ALIGN float buffer[lanes];
-  hn::Store(value.v, D(), buffer);
-  for (std::size_t l = 0; l < count; ++l) to[l] = static_cast<double>(buffer[l]);
+  HWY_ALIGN double buffer[lanes];
+  hn::Store(v.lo, dd, buffer);
+  hn::Store(v.hi, dd, buffer + lanes / 2);
+  for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
 }
-
-/// Adds the first `count` lanes to the doubles at `to`.
-HWY_INLINE void add_doubles(Lanes value, double* HWY_RESTRICT to, std::size_t count) {
+HWY_INLINE Wide wide(Lanes a) {
   const Doubles dd;
-  if (count == lanes) {
-    hn::StoreU(hn::Add(hn::LoadU(dd, to), hn::PromoteTo(dd, hn::LowerHalf(value.v))), dd, to);
-    hn::StoreU(hn::Add(hn::LoadU(dd, to + lanes / 2), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), value.v))), dd,
-               to + lanes / 2);
-    return;
-  }
-  HWY_ALIGN float buffer[lanes];
-  hn::Store(value.v, D(), buffer);
-  for (std::size_t l = 0; l < count; ++l) to[l] += static_cast<double>(buffer[l]);
+  return {hn::PromoteTo(dd, hn::LowerHalf(a.v)), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), a.v))};
 }
+HWY_INLINE Lanes narrow(Wide a) {
+  const HalfD half;
+  return Lanes(hn::Combine(D(), hn::DemoteTo(half, a.hi), hn::DemoteTo(half, a.lo)));
+}
+HWY_INLINE Wide each(double value) { return {hn::Set(Doubles(), value), hn::Set(Doubles(), value)}; }
+HWY_INLINE Wide operator+(Wide a, Wide b) { return {hn::Add(a.lo, b.lo), hn::Add(a.hi, b.hi)}; }
+HWY_INLINE Wide operator-(Wide a, Wide b) { return {hn::Sub(a.lo, b.lo), hn::Sub(a.hi, b.hi)}; }
+HWY_INLINE Wide operator*(Wide a, Wide b) { return {hn::Mul(a.lo, b.lo), hn::Mul(a.hi, b.hi)}; }
+HWY_INLINE Wide operator/(Wide a, Wide b) { return {hn::Div(a.lo, b.lo), hn::Div(a.hi, b.hi)}; }
 
 /// Writes the first `count` lanes to `to`.
 HWY_INLINE void store(Lanes value, float* HWY_RESTRICT to, std::size_t count) {

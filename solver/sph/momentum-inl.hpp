@@ -1,4 +1,4 @@
-// The momentum equation, for every number type. Included once for every instruction set.
+// The momentum equation and its artificial viscosity, for every number type. Included once for every instruction set.
 
 #if defined(TALUS_SPH_MOMENTUM_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TALUS_SPH_MOMENTUM_INL
@@ -10,9 +10,41 @@
 #include <hwy/highway.h>
 
 #include "math/tensor-inl.hpp"
+#include "sph/flow_constants.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
+
+/// Pi_ij = (-alpha c_s mu + beta mu^2)/rho_mean, mu = h v_ij.r_ij/(r^2 + 0.01 h^2), for approaching pairs only.
+/// Monaghan 1992, cited by [Z20] Eq. 2. Here as rho_i rho_j Pi_ij, which the momentum equation needs.
+/// `Quadratic`: beta is not zero.
+template <class Real, bool Quadratic>
+struct ArtificialViscosity {
+  Real alpha_c;  ///< -alpha c_s [m/s]
+  Real beta;     ///< [-]
+  Real h, soft;  ///< smoothing length, and 0.01 h^2, in the unit of the distances
+
+  /// @param unit  of the distances [m]
+  HWY_INLINE ArtificialViscosity(const FlowConstants& k, double unit)
+      : alpha_c(-k.numerics.alpha * k.c_s),
+        beta(k.numerics.beta),
+        h(k.h / unit),
+        soft(0.01 * k.h * k.h / (unit * unit)) {}
+
+  /// What all pairs of a particle i have in common: 2 h rho_i, times -alpha c_s where the law is linear.
+  HWY_INLINE Real of_particle(Real rho_i) const {
+    const Real h_rho = Real(2.0) * h * rho_i;
+    return Quadratic ? h_rho : h_rho * alpha_c;
+  }
+
+  /// rho_i rho_j Pi_ij = (rho_i rho_j/rho_mean) mu (beta mu - alpha c_s)
+  HWY_INLINE Real operator()(Real of_i, Real rho_i, Real rho_j, Real v_dot_r, Real r2) const {
+    const Real approach = min(v_dot_r, Real(0.0)), soft_r2 = r2 + soft;
+    const Real linear = of_i * approach * (rho_j / ((rho_i + rho_j) * soft_r2));
+    if constexpr (!Quadratic) return linear;
+    return linear * fma(beta, h * approach / soft_r2, alpha_c);
+  }
+};
 
 /// dv_i/dt = sum_j m_j ((sigma_i + sigma_j)/(rho_i rho_j) - Pi_ij I) . grad_i W_ij + g    [Z20] Eq. 2
 ///         = (1/rho_i) sum_j V_j (sigma_i + sigma_j - rho_i rho_j Pi_ij I) . F r_ij + g

@@ -9,7 +9,6 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sph/artificial_viscosity-inl.hpp"
 #include "sph/kernel-inl.hpp"
 #include "sph/momentum-inl.hpp"
 #include "sph/pairs-inl.hpp"
@@ -18,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
 template <class Kernel, bool Quadratic>
-HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Chunk clusters) {
+HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range clusters) {
   const double quantum = f.fixed.quantum;
   const Kernel kernel(quantum / k.h);
   const ArtificialViscosity<Lanes, Quadratic> viscosity(k, quantum);
@@ -59,7 +58,7 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Chunk cluster
   }
 }
 
-void momentum_dispatch(PackedFlow& f, const FlowConstants& k, Chunk clusters) {
+void momentum_dispatch(PackedFlow& f, const FlowConstants& k, Range clusters) {
   with_kernel<Lanes>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
     if (k.numerics.beta > 0.0)
       momentum_loop<Kernel, true>(f, k, clusters);
@@ -76,7 +75,7 @@ namespace talus {
 
 HWY_EXPORT(momentum_dispatch);
 
-void momentum_pass(PackedFlow& f, const FlowConstants& k, Chunk clusters) {
+void momentum_pass(PackedFlow& f, const FlowConstants& k, Range clusters) {
   HWY_DYNAMIC_DISPATCH(momentum_dispatch)(f, k, clusters);
 }
 

@@ -3,12 +3,9 @@
 
 #include <optional>
 
-#include "material/rheology.hpp"
-
 namespace talus {
 
 enum class WallContact { always, approaching };  ///< approaching: a wall acts only where v_ij . x_ij < 0, [Z20] 2.1
-enum class WallSlip { no_slip, friction, free_slip };  ///< friction: the soil's own, or a smaller angle of the wall
 enum class KernelShape { wendland_c2, cubic_spline };
 enum class DensityFilter { delta_sph, shepard, none };
 enum class Integrator { rk2, leapfrog };
@@ -40,11 +37,9 @@ struct Numerics {
   bool operator==(const Numerics&) const = default;
 };
 
-/// How the walls act.
+/// What all walls have in common; how soil slides along them is a matter of each Boundary.
 struct Walls {
   WallContact contact = WallContact::always;
-  WallSlip slip = WallSlip::no_slip;
-  double phi = 0.0;    ///< friction angle of the wall, used with WallSlip::friction [rad], in [0, pi/2)
   double b_max = 1.5;  ///< largest ratio of mirrored velocity [-], >= 1; [Morris 1997] 1.5
   int layers = 3;      ///< layers of wall particles, enough to fill the support 2h
   bool operator==(const Walls&) const = default;

@@ -11,52 +11,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sph/density_diffusion-inl.hpp"
+#include "sph/continuity-inl.hpp"
 #include "sph/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
-
-using DoubleV = hn::Vec<Doubles>;
-
-/// One value of all particles of a vector in double precision: lower and upper half.
-struct Wide {
-  DoubleV lo, hi;
-};
-HWY_INLINE Wide load(const double* HWY_RESTRICT from, std::size_t count) {
-  const Doubles dd;
-  HWY_ALIGN double buffer[lanes] = {};
-  if (count < lanes) {
-    for (std::size_t l = 0; l < count; ++l) buffer[l] = from[l];
-    from = buffer;
-  }
-  return {hn::LoadU(dd, from), hn::LoadU(dd, from + lanes / 2)};
-}
-HWY_INLINE void store(Wide v, double* HWY_RESTRICT to, std::size_t count) {
-  const Doubles dd;
-  if (count == lanes) {
-    hn::StoreU(v.lo, dd, to);
-    hn::StoreU(v.hi, dd, to + lanes / 2);
-    return;
-  }
-  HWY_ALIGN double buffer[lanes];
-  hn::Store(v.lo, dd, buffer);
-  hn::Store(v.hi, dd, buffer + lanes / 2);
-  for (std::size_t l = 0; l < count; ++l) to[l] = buffer[l];
-}
-HWY_INLINE Wide wide(Lanes a) {
-  const Doubles dd;
-  return {hn::PromoteTo(dd, hn::LowerHalf(a.v)), hn::PromoteTo(dd, hn::UpperHalf(HalfD(), a.v))};
-}
-HWY_INLINE Lanes narrow(Wide a) {
-  const HalfD half;
-  return Lanes(hn::Combine(D(), hn::DemoteTo(half, a.hi), hn::DemoteTo(half, a.lo)));
-}
-HWY_INLINE Wide each(double value) { return {hn::Set(Doubles(), value), hn::Set(Doubles(), value)}; }
-HWY_INLINE Wide operator+(Wide a, Wide b) { return {hn::Add(a.lo, b.lo), hn::Add(a.hi, b.hi)}; }
-HWY_INLINE Wide operator-(Wide a, Wide b) { return {hn::Sub(a.lo, b.lo), hn::Sub(a.hi, b.hi)}; }
-HWY_INLINE Wide operator*(Wide a, Wide b) { return {hn::Mul(a.lo, b.lo), hn::Mul(a.hi, b.hi)}; }
-HWY_INLINE Wide operator/(Wide a, Wide b) { return {hn::Div(a.lo, b.lo), hn::Div(a.hi, b.hi)}; }
 
 /// Fixed-point coordinates as bit patterns.
 HWY_INLINE Lanes fixed_point(Wide x, double lo, double per_quantum) {
@@ -110,11 +69,11 @@ struct Packer {
   }
 };
 
-HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk) {
+HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Range range) {
   const Packer packer(f, k);
   const Wide dt = each(ahead);
-  for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
-    const std::size_t count = std::min(chunk.end - i, lanes);
+  for (std::size_t i = range.begin; i < range.end; i += lanes) {
+    const std::size_t count = std::min(range.end - i, lanes);
     const auto rate = [&](const std::vector<float>& array) HWY_ATTR { return wide(load(array.data() + i)); };
     const auto state = [&](const std::vector<double>& array) HWY_ATTR { return load(array.data() + i, count); };
     const Wide vx = state(soil.vx), vy = state(soil.vy);
@@ -126,15 +85,15 @@ HWY_ATTR void pack_soil_loop(PackedFlow& f, const FlowConstants& k, const Soil& 
 }
 
 HWY_ATTR StepExtrema move_soil_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double step,
-                                    bool midpoint_velocity, Chunk chunk) {
+                                    bool midpoint_velocity, Range range) {
   const D d;
   const Packer packer(f, k);
   const Wide dt = each(step), half = each(0.5), zero = each(0.0);
   Lanes displacement2(0.0), acceleration2(0.0);
   Wide speed2 = zero, moved2 = zero, min_density = each(1e300), nonfinite = zero, leftmost = each(1e300),
        rightmost = each(-1e300);
-  for (std::size_t i = chunk.begin; i < chunk.end; i += lanes) {
-    const std::size_t count = std::min(chunk.end - i, lanes);
+  for (std::size_t i = range.begin; i < range.end; i += lanes) {
+    const std::size_t count = std::min(range.end - i, lanes);
     const Lanes ax = load(f.soil.ax.data() + i), ay = load(f.soil.ay.data() + i);
     const auto state = [&](const std::vector<double>& array) HWY_ATTR { return load(array.data() + i, count); };
     const auto move = [&](std::vector<double>& array, Wide rate) HWY_ATTR {
@@ -211,16 +170,16 @@ namespace talus {
 HWY_EXPORT(pack_soil_loop);
 HWY_EXPORT(move_soil_loop);
 
-void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk) {
-  HWY_DYNAMIC_DISPATCH(pack_soil_loop)(f, k, soil, ahead, chunk);
+void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Range range) {
+  HWY_DYNAMIC_DISPATCH(pack_soil_loop)(f, k, soil, ahead, range);
 }
 
 StepExtrema move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, bool midpoint_velocity,
-                      Chunk chunk) {
-  return HWY_DYNAMIC_DISPATCH(move_soil_loop)(f, k, soil, dt, midpoint_velocity, chunk);
+                      Range range) {
+  return HWY_DYNAMIC_DISPATCH(move_soil_loop)(f, k, soil, dt, midpoint_velocity, range);
 }
 
-void pack_walls(PackedFlow& f, const WallParticles& walls) {
+void pack_walls(PackedFlow& f, const FlowConstants& k, const WallParticles& walls) {
   // Walls beyond the fixed point's box are too far from any soil to matter.
   const auto fixed = [&](double x, double lo) {
     return std::bit_cast<float>(
@@ -232,6 +191,9 @@ void pack_walls(PackedFlow& f, const WallParticles& walls) {
     f.walls.place[4 * w + 2] = static_cast<float>(walls.nx[w]);
     f.walls.place[4 * w + 3] = static_cast<float>(walls.ny[w]);
     f.walls.stress[4 * w + 3] = static_cast<float>(walls.depth[w]);
+    const WallFriction& boundary = k.boundaries[static_cast<std::size_t>(walls.boundary[w])];
+    f.walls.slip[w] = slip_code(boundary.slip);
+    f.walls.tan_phi[w] = static_cast<float>(boundary.tan_phi);
   }
 }
 

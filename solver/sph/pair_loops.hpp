@@ -2,28 +2,14 @@
 // The right-hand side in vectors of single precision (Highway, chosen for the processor at run time). The plain
 // double-precision loops in right_hand_side.cpp are its oracle.
 
-#include <cstdint>
-#include <optional>
-#include <span>
 #include <string>
 
 #include "particles/particles.hpp"
-#include "sph/cluster_list.hpp"
 #include "sph/flow_constants.hpp"
-#include "sph/packed.hpp"
+#include "sph/packed_flow.hpp"
 #include "sph/step_extrema.hpp"
 
 namespace talus {
-
-/// What the vectorised loops read and write.
-struct PackedFlow {
-  FixedPoint fixed;
-  std::optional<double> mass;  ///< of every soil particle, where all have the same [kg/m]
-  PackedSoil soil;
-  PackedWalls walls;
-  std::vector<std::uint32_t> soil_clusters = {0}, wall_clusters = {0};  ///< first place of each, and one more
-  ClusterList soil_soil, soil_wall, wall_soil;                          ///< target_source
-};
 
 /// Particles in one vector.
 std::size_t cluster_size();
@@ -34,29 +20,36 @@ const char* pair_loops_target();
 bool limit_pair_loops(const std::string& name);
 
 /// Packs position, velocity and density of soil particles as they will be after `ahead` [s] at the present rates.
-void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Chunk chunk);
-/// Packs place, normal and depth of all walls.
-void pack_walls(PackedFlow& f, const WallParticles& walls);
+void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Range range);
+/// Packs what does not change of all walls: place, normal, depth and friction.
+void pack_walls(PackedFlow& f, const FlowConstants& k, const WallParticles& walls);
 
-/// Lists for chunk c of the clusters of `first`, which stand at `targets`: all `sources`, in `cells`, that are nearer
-/// than `distance` [m] to the cluster's bounding box. Both are groups of four that begin with x and y. No source has
-/// moved further than `moved` [m] since the cells were built; `nowhere` is the place that fills the lists up.
-void list_neighbours(const FixedPoint& fixed, std::span<const std::uint32_t> first, std::span<const float> targets,
-                     const CellList& cells, std::span<const float> sources, double distance, double moved,
-                     std::uint32_t nowhere, std::size_t c, ClusterList& list);
+/// Which neighbours to list.
+struct NeighbourSearch {
+  const FixedPoint& fixed;
+  std::span<const std::uint32_t> clusters;  ///< of the targets, as clusters() returns them
+  std::span<const float> targets;           ///< in groups of four that begin with x and y
+  std::span<const float> sources;           ///< the same
+  const CellList& cells;                    ///< of the sources
+  double distance;                          ///< of a source to the bounding box of a cluster, at most [m]
+  double moved;                             ///< by any source since the cells were built, at most [m]
+  std::uint32_t padding;                    ///< place that fills the lists up: one behind the last source
+};
+/// Lists the neighbours of the clusters of one batch.
+void list_neighbours(const NeighbourSearch& search, std::size_t batch, ClusterList& list);
 
 /// First pass over some of the soil's clusters: velocity gradient, density rate, stress ([Z20] Eqs. 1-10), with the
 /// elastic stress as it will be after `ahead` [s]. `keep`: what returning it to the yield surface takes off is taken
 /// off the soil's.
-void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters);
-/// Stress of chunk c of the walls' clusters, extrapolated from the soil.
-void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t c);
+void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Range clusters);
+/// Stress of one batch of the walls' clusters, extrapolated from the soil.
+void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t batch);
 /// Second pass over some of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included.
-void momentum_pass(PackedFlow& f, const FlowConstants& k, Chunk clusters);
+void momentum_pass(PackedFlow& f, const FlowConstants& k, Range clusters);
 
 /// Moves soil particles on by dt [s] at the present rates, positions with the velocities of the last evaluation
 /// (`midpoint_velocity`) or with the mean of the old and the new ones, and packs the outcome.
 StepExtrema move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double dt, bool midpoint_velocity,
-                      Chunk chunk);
+                      Range range);
 
 }  // namespace talus

@@ -25,9 +25,9 @@ struct Neighbours {
   const std::uint32_t *begin, *end;
 };
 HWY_INLINE Neighbours neighbours(const ClusterList& list, std::size_t c) {
-  const ClusterList::Chunk& chunk = list.chunks[c / ClusterList::chunk_size];
-  const std::size_t k = c % ClusterList::chunk_size;
-  return {chunk.places.data() + chunk.at[k], chunk.places.data() + chunk.at[k + 1]};
+  const ClusterList::Batch& batch = list.batches[c / ClusterList::batch_size];
+  const std::size_t k = c % ClusterList::batch_size;
+  return {batch.places.data() + batch.at[k], batch.places.data() + batch.at[k + 1]};
 }
 
 /// Neighbours are taken some at a time, step by step together.
@@ -85,7 +85,9 @@ HWY_INLINE void for_neighbours(Vector<Lanes> x, const float* HWY_RESTRICT groups
 /// A group of four of the walls' particle j.
 HWY_INLINE WallParticle<Lanes> wall_particle(const PackedWalls& walls, std::size_t j) {
   const float* HWY_RESTRICT place = walls.place.data() + 4 * j;
-  return {{Lanes(place[2]), Lanes(place[3])}, Lanes(walls.stress[4 * j + 3])};
+  return {{Lanes(place[2]), Lanes(place[3])},
+          Lanes(walls.stress[4 * j + 3]),
+          walls.slip[j] == slip_code(WallSlip::free_slip)};
 }
 /// The stress of a group of four (sxx, syy, sxy, ...).
 HWY_INLINE Symmetric<Lanes> stress_of(const std::vector<float>& groups, std::size_t j) {

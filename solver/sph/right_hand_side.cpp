@@ -4,12 +4,11 @@
 #include <cmath>
 #include <vector>
 
-#include "sph/artificial_viscosity-inl.hpp"
-#include "sph/density_diffusion-inl.hpp"
 #include "sph/kernel-inl.hpp"
 #include "sph/momentum-inl.hpp"
 #include "sph/point_update-inl.hpp"
 #include "sph/shepard_filter.hpp"
+#include "sph/wall-inl.hpp"
 
 namespace talus {
 namespace {
@@ -43,7 +42,7 @@ struct SoilPoint {
     return k.soils[static_cast<std::size_t>(soil.material[j])];
   }
   double q() const { return soil.rho[i] / parameters(i).eos.rho0 - 1.0; }
-  double tan_phi() const { return soil.tan_phi[i]; }
+  double c() const { return soil.c[i]; }
   template <class Get>
   double constant(Get&& get) const {
     return get(parameters(i));
@@ -79,14 +78,19 @@ struct Passes {
   const FlowConstants& k;
   Soil& soil;
   WallParticles& walls;
-  const CellList &soil_cells, &wall_cells;
+  const ParticleCells& cells;
   Kernel kernel{1.0 / k.h};
   double sigma = sigma_h2<Kernel>(k.h), support2 = 4.0 * k.h * k.h;
   WallLaw<double> wall_law{k.walls, 1.0};
 
   double minus_F(double r2) const { return kernel.minus_F(std::sqrt(r2), r2); }
   Symmetric<double> stress(std::size_t i) const { return {soil.sxx[i], soil.syy[i], soil.sxy[i]}; }
-  WallParticle<double> wall_particle(std::size_t j) const { return {vector(walls.normal(j)), walls.depth[j]}; }
+  const WallFriction& boundary(std::size_t j) const {
+    return k.boundaries[static_cast<std::size_t>(walls.boundary[j])];
+  }
+  WallParticle<double> wall_particle(std::size_t j) const {
+    return {vector(walls.normal(j)), walls.depth[j], boundary(j).slip == WallSlip::free_slip};
+  }
   double q(std::size_t j) const { return SoilPoint{k, soil, j}.q(); }
 
   template <class Model>
@@ -98,31 +102,35 @@ struct Passes {
     const auto dynamic = [&](std::size_t j) { return dynamic_density(q(j), g_per_c2, vector(soil.position(j))); };
     const double dynamic_i = dynamic(i);
     auto sums = FlowRateSums<double>::zero();
-    for_neighbours(soil_cells, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
+    double tan_phi = soil.tan_phi[i];
+    for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double VF = soil.m[j] / soil.rho[j] * minus_F(r2);
       sums.add(VF, soil.rho[j], v_i - vector(soil.velocity(j)), r, by_mass);
       if (diffuse && soil.material[j] == soil.material[i])
         sums.diffusion = add_diffusion(sums.diffusion, VF, dynamic(j) - dynamic_i);
     });
-    for_neighbours(wall_cells, walls, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
+    for_neighbours(cells.walls, walls, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const WallPair<double> w = wall_law.pair(r, v_i, wall_particle(j));
       if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
       sums.add(walls.volume * minus_F(r2), rho_i, w.v_ij, r, by_mass);
-      sums.wall_distance = min(sums.wall_distance, w.distance);
+      tan_phi = interface_tan_phi(tan_phi, boundary(j).tan_phi, w.distance, interface_thickness(k.h));
     });
     const double to_diffusion = 2.0 * k.numerics.delta * k.h * k.c_s * sigma;
-    update_point(k, Model(k.rheology), sums.rates(-sigma, to_diffusion, by_mass, rho_i), SoilPoint{k, soil, i});
+    update_point(k, Model(k.rheology), sums.rates(-sigma, to_diffusion, by_mass, rho_i), tan_phi,
+                 SoilPoint{k, soil, i});
   }
 
   void update_wall_stress(std::size_t w) const {
     auto sum = WallStressSum<double>::zero();
-    for_neighbours(soil_cells, soil, walls.position(w), support2, [&](std::size_t j, Vector<double> r, double r2) {
+    for_neighbours(cells.soil, soil, walls.position(w), support2, [&](std::size_t j, Vector<double> r, double r2) {
       sum.add(kernel.W(std::sqrt(r2)), {stress(j), soil.p[j], soil.rho[j], q(j)}, dot(vector(k.g), r),
               1.0 / (k.c_s * k.c_s));
     });
-    const WallStress<double> wall = sum.value(k, vector(walls.normal(w)));
+    const WallSlip slip = boundary(w).slip;
+    const WallStress<double> wall = sum.value(k.numerics.tension_cutoff, vector(walls.normal(w)),
+                                              slip == WallSlip::no_slip, slip == WallSlip::free_slip);
     walls.p[w] = wall.p;
-    walls.compression[w] = wall.density_ratio;
+    walls.density_ratio[w] = wall.density_ratio;
     walls.sxx[w] = wall.s.xx;
     walls.syy[w] = wall.s.yy;
     walls.sxy[w] = wall.s.xy;
@@ -135,11 +143,11 @@ struct Passes {
     const double rho_i = soil.rho[i], viscosity_of_i = viscosity.of_particle(rho_i);
     const Symmetric<double> s_i = stress(i);
     Vector<double> sum{0.0, 0.0};
-    for_neighbours(soil_cells, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
+    for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double Pi = viscosity(viscosity_of_i, rho_i, soil.rho[j], dot(v_i - vector(soil.velocity(j)), r), r2);
       sum = add_force(sum, s_i, stress(j), Pi, soil.m[j] / soil.rho[j] * minus_F(r2), r);
     });
-    for_neighbours(wall_cells, walls, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
+    for_neighbours(cells.walls, walls, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const WallPair<double> w = wall_law.pair(r, v_i, wall_particle(j));
       if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
       const double Pi = viscosity(viscosity_of_i, rho_i, rho_i, w.v_dot_r, r2);
@@ -171,36 +179,34 @@ struct Passes {
 
 /// Shepard-filtered density of one particle [kg/m3].
 double filtered_density(const FlowConstants& k, const Soil& soil, std::size_t i, const WallParticles& walls,
-                        const CellList& soil_cells, const CellList& wall_cells) {
+                        const ParticleCells& cells) {
   const double support2 = 4.0 * k.h * k.h;
   const ShepardKernel kernel(k.numerics.kernel, k.h);
   const auto rho0 = [&](std::size_t j) { return k.soils[static_cast<std::size_t>(soil.material[j])].eos.rho0; };
   ShepardSum sum;
-  for_neighbours(soil_cells, soil, soil.position(i), support2, [&](std::size_t j, Vector<double>, double r2) {
+  for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double>, double r2) {
     sum.add(soil.m[j] / soil.rho[j], soil.rho[j] / rho0(j), kernel.W(r2));
   });
-  for_neighbours(wall_cells, walls, soil.position(i), support2, [&](std::size_t j, Vector<double>, double r2) {
-    if (walls.compression[j] > 0.0) sum.add(walls.volume, walls.compression[j], kernel.W(r2));
+  for_neighbours(cells.walls, walls, soil.position(i), support2, [&](std::size_t j, Vector<double>, double r2) {
+    if (walls.density_ratio[j] > 0.0) sum.add(walls.volume, walls.density_ratio[j], kernel.W(r2));
   });
   return rho0(i) * sum.value();
 }
 
 }  // namespace
 
-void RightHandSide::evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells) {
-  with_kernel<double>(k_.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
-    with_constitutive_model<double>(k_.rheology, [&]<class Model>(std::type_identity<Model>) {
-      Passes<Kernel>{k_, soil, walls, soil_cells, wall_cells}.template evaluate<Model>();
+void evaluate_plain(const FlowConstants& k, Soil& soil, WallParticles& walls, const ParticleCells& cells) {
+  with_kernel<double>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+    with_constitutive_model<double>(k.rheology, [&]<class Model>(std::type_identity<Model>) {
+      Passes<Kernel>{k, soil, walls, cells}.template evaluate<Model>();
     });
   });
 }
 
-void RightHandSide::filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells,
-                                   const CellList& wall_cells) const {
+void filter_density(const FlowConstants& k, Soil& soil, const WallParticles& walls, const ParticleCells& cells) {
   std::vector<double> filtered(soil.n_active);
 #pragma omp parallel for schedule(static, grain)
-  for (std::size_t i = 0; i < soil.n_active; ++i)
-    filtered[i] = filtered_density(k_, soil, i, walls, soil_cells, wall_cells);
+  for (std::size_t i = 0; i < soil.n_active; ++i) filtered[i] = filtered_density(k, soil, i, walls, cells);
   std::copy(filtered.begin(), filtered.end(), soil.rho.begin());
 }
 

@@ -10,23 +10,12 @@ namespace talus {
 /// Evaluates rates of change in double precision, one pair after the other: the plain loops, oracle of the vectorised
 /// ones. Gather loops only: every particle sums its own neighbours in the order of the cells, so the result has the
 /// same bits for any number of threads.
-class RightHandSide {
- public:
-  explicit RightHandSide(FlowConstants constants) : k_(std::move(constants)) {}
+/// Fills ax, ay, drho, dt** and the derived p, s**, gamma_dot of the active soil, and the extrapolated stress of the
+/// walls. With the elastic law it first returns t** to the yield surface. The reach of the cells must cover 2h around
+/// every particle's present position.
+void evaluate_plain(const FlowConstants& k, Soil& soil, WallParticles& walls, const ParticleCells& cells);
 
-  /// Fills ax, ay, drho, dt** and the derived p, s**, gamma_dot of the active soil, and the extrapolated stress of the
-  /// walls. With the elastic law it first returns t** to the yield surface. The reach of both cell lists must cover 2h
-  /// around every particle's present position.
-  void evaluate(Soil& soil, WallParticles& walls, const CellList& soil_cells, const CellList& wall_cells);
-
-  /// One pass of the Shepard filter over the densities of the active soil.
-  void filter_density(Soil& soil, const WallParticles& walls, const CellList& soil_cells,
-                      const CellList& wall_cells) const;
-
-  const FlowConstants& constants() const { return k_; }
-
- private:
-  FlowConstants k_;
-};
+/// One pass of the Shepard filter over the densities of the active soil.
+void filter_density(const FlowConstants& k, Soil& soil, const WallParticles& walls, const ParticleCells& cells);
 
 }  // namespace talus

@@ -9,7 +9,6 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sph/density_diffusion-inl.hpp"
 #include "sph/kernel-inl.hpp"
 #include "sph/pairs-inl.hpp"
 #include "sph/point_update-inl.hpp"
@@ -27,7 +26,8 @@ struct ClusterPoint {
   std::size_t i, count;
 
   HWY_INLINE Lanes q() const { return load(f.soil.q.data() + i); }
-  HWY_INLINE Lanes tan_phi() const { return load_doubles(soil.tan_phi.data() + i, count); }
+  HWY_INLINE Lanes tan_phi() const { return state(soil.tan_phi); }
+  HWY_INLINE Lanes c() const { return state(soil.c); }
   template <class Get>
   HWY_INLINE Lanes constant(Get&& get) const {
     if (k.soils.size() == 1) return Lanes(get(k.soils[0]));
@@ -52,9 +52,11 @@ struct ClusterPoint {
   }
   HWY_INLINE void add(Deviator<Lanes> change) const {
     if (!keep) return;
-    add_doubles(change.xx, soil.txx.data() + i, count);
-    add_doubles(change.yy, soil.tyy.data() + i, count);
-    add_doubles(change.xy, soil.txy.data() + i, count);
+    const auto add_to = [&](std::vector<double>& array, Lanes value)
+                            HWY_ATTR { store(load(array.data() + i, count) + wide(value), array.data() + i, count); };
+    add_to(soil.txx, change.xx);
+    add_to(soil.tyy, change.yy);
+    add_to(soil.txy, change.xy);
   }
   HWY_INLINE void set_rate(Deviator<Lanes> dt) const {
     store(dt.xx, f.soil.dtxx.data() + i, count);
@@ -64,7 +66,7 @@ struct ClusterPoint {
 
  private:
   HWY_INLINE Lanes rate(const std::vector<float>& array) const { return load(array.data() + i); }
-  HWY_INLINE Lanes state(const std::vector<double>& array) const { return load_doubles(array.data() + i, count); }
+  HWY_INLINE Lanes state(const std::vector<double>& array) const { return narrow(load(array.data() + i, count)); }
 };
 
 /// What a run has chosen: which sums the loop needs, and which kernel and constitutive model.
@@ -76,12 +78,14 @@ struct StressChoice {
 };
 
 template <class Choice>
-HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
+HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Range clusters) {
   const double quantum = f.fixed.quantum, sigma = sigma_h2<typename Choice::Kernel>(k.h);
   const typename Choice::Kernel kernel(quantum / k.h);
   const typename Choice::Model model(k.rheology);
   const WallLaw<Lanes> wall(k.walls, quantum);
   const Lanes volume_w(k.dx * k.dx), support2(4.0 * k.h * k.h / (quantum * quantum));
+  const bool frictional = any_friction(k);
+  const Lanes thickness(interface_thickness(k.h));
   const Lanes to_L(-sigma * quantum), to_diffusion(2.0 * k.numerics.delta * k.h * k.c_s * sigma);
   const auto minus_F = [&](Lanes r, Lanes r2) HWY_ATTR { return kernel.minus_F(r, r2); };
   for (std::size_t c = clusters.begin; c < clusters.end; ++c) {
@@ -90,6 +94,8 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
     Lanes volume, q, rho, material;
     load_groups(f.soil.motion.data() + 4 * i, x.x, x.y, v.x, v.y);
     load_groups(f.soil.density.data() + 4 * i, volume, q, rho, material);
+    const ClusterPoint point{f, k, soil, ahead, keep, i, count};
+    Lanes tan_phi = point.tan_phi();
     auto sums = FlowRateSums<Lanes>::zero();
     const auto add_soil = [&](const Pair& pair) HWY_ATTR {
       const float* HWY_RESTRICT motion = f.soil.motion.data() + 4 * pair.j;
@@ -107,16 +113,18 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
       auto acts = pair.r2 < support2;
       if (wall.only_approaching) acts = acts & (w.v_dot_r < Lanes(0.0));
       sums.add(select_or_zero(acts, volume_w * pair.kernel), rho, w.v_ij, pair.r, Choice::by_mass);
-      sums.wall_distance = select(acts, min(sums.wall_distance, w.distance), sums.wall_distance);
+      if (frictional) {
+        const Lanes of_wall(f.walls.tan_phi[pair.j]);
+        tan_phi = select(acts, interface_tan_phi(tan_phi, of_wall, w.distance, thickness), tan_phi);
+      }
     };
     for_neighbours<true>(x, f.soil.motion.data(), neighbours(f.soil_soil, c), minus_F, add_soil);
     for_neighbours<false>(x, f.walls.place.data(), neighbours(f.soil_wall, c), minus_F, add_wall);
-    update_point(k, model, sums.rates(to_L, to_diffusion, Choice::by_mass, rho),
-                 ClusterPoint{f, k, soil, ahead, keep, i, count});
+    update_point(k, model, sums.rates(to_L, to_diffusion, Choice::by_mass, rho), tan_phi, point);
   }
 }
 
-void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
+void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Range clusters) {
   const bool diffuse = k.numerics.density_filter == DensityFilter::delta_sph, one_material = k.soils.size() == 1,
              by_mass = k.numerics.continuity == Continuity::mass;
   with_kernel<Lanes>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
@@ -145,7 +153,7 @@ namespace talus {
 
 HWY_EXPORT(stress_dispatch);
 
-void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Chunk clusters) {
+void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Range clusters) {
   HWY_DYNAMIC_DISPATCH(stress_dispatch)(f, k, soil, ahead, keep, clusters);
 }
 

@@ -35,6 +35,7 @@ template <class Real>
 struct WallParticle {
   Vector<Real> normal;  ///< unit normal of the wall, towards the soil
   Real depth;           ///< distance to the wall line [m]
+  bool smooth;          ///< its boundary has WallSlip::free_slip
 };
 
 /// A soil-wall pair.
@@ -45,35 +46,34 @@ struct WallPair {
   Real v_dot_r;       ///< [m/s times the unit of the distances]
 };
 
-/// The walls of a run.
+/// What all walls of a run have in common.
 template <class Real>
 struct WallLaw {
   Real b_max;  ///< largest mirror ratio [-]
   Real unit;   ///< of the distances [m]
-  bool smooth, only_approaching;
+  bool only_approaching;
 
   /// @param metres  unit of the distances [m]
   HWY_INLINE WallLaw(const Walls& walls, double metres)
-      : b_max(walls.b_max),
-        unit(metres),
-        smooth(walls.slip == WallSlip::free_slip),
-        only_approaching(walls.contact == WallContact::approaching) {}
+      : b_max(walls.b_max), unit(metres), only_approaching(walls.contact == WallContact::approaching) {}
 
   HWY_INLINE WallPair<Real> pair(Vector<Real> r_ij, Vector<Real> v_i, const WallParticle<Real>& j) const {
     const Real distance = fms(unit, dot(r_ij, j.normal), j.depth);
     const Real b = mirror_ratio(distance, j.depth, b_max);
-    const Vector<Real> v_ij = wall_relative_velocity(v_i, j.normal, b, smooth);
+    const Vector<Real> v_ij = wall_relative_velocity(v_i, j.normal, b, j.smooth);
     return {distance, v_ij, dot(v_ij, r_ij)};
   }
 };
 
 /// A wall that is smoother than the soil is a thin interface layer with the wall's friction angle (after Desai 1984):
-/// soil nearer than `thickness` to the wall line yields at the smaller of both.
+/// soil nearer than `thickness` to the wall line yields at the smaller of both. Where several such walls are near, the
+/// smallest angle counts.
 template <class Real>
 HWY_INLINE Real interface_tan_phi(Real tan_phi, Real tan_phi_wall, Real d_i, Real thickness) {
   return select(d_i < thickness, min(tan_phi, tan_phi_wall), tan_phi);
 }
-/// Wide enough to hold most of what the kernel sees from the wall: one row of particles at h = 1.2 dx, two at 1.5 dx.
+/// [m]; wide enough to hold most of what the kernel sees from the wall: one row of particles at h = 1.2 dx, two at 1.5
+/// dx.
 inline double interface_thickness(double h) { return 1.1 * h; }
 
 /// The most that the deviatoric stress may grow on its way to a wall particle [-].
@@ -132,15 +132,16 @@ struct WallStressSum {
     t = fma(W, Deviator<Real>{f.s.xx + f.p, f.s.yy + f.p, f.s.xy}, t);
   }
 
-  HWY_INLINE WallStress<Real> value(const FlowConstants& k, Vector<Real> normal) const {
+  /// @param rough, smooth  where the boundary has WallSlip::no_slip, WallSlip::free_slip
+  template <class Mask>
+  HWY_INLINE WallStress<Real> value(bool tension_cutoff, Vector<Real> normal, Mask rough, Mask smooth) const {
     const auto covered = weight > Real(min_kernel_sum);
     const Real inverse = select_or_zero(covered, Real(1.0) / weight);
     Real p_wall = p * inverse;
-    if (k.numerics.tension_cutoff) p_wall = max(p_wall, Real(0.0));
-    const Real share =
-        k.walls.slip == WallSlip::no_slip ? inverse * deviator_growth(p_wall, p_soil * inverse) : inverse;
+    if (tension_cutoff) p_wall = max(p_wall, Real(0.0));
+    const Real share = inverse * select(rough, deviator_growth(p_wall, p_soil * inverse), Real(1.0));
     Symmetric<Real> s{fms(t.xx, share, p_wall), fms(t.yy, share, p_wall), t.xy * share};
-    if (k.walls.slip == WallSlip::free_slip) s = mirrored(s, normal);
+    if (any(smooth)) s = select(smooth, mirrored(s, normal), s);
     return {s, p_wall, select_or_zero(covered, fma(q, inverse, Real(1.0)))};
   }
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "support/csv.hpp"
 #include "support/files.hpp"
@@ -31,7 +32,10 @@ std::string csv_header(const std::string& index_name) {
 std::string csv_line(const Record& record) {
   std::string line = std::to_string(record.index) + (record.done ? ",done" : ",failed");
   if (!record.done) return line + std::string(numbers + 2, ',') + csv_quoted(record.reason) + '\n';
-  visit_numbers(record, [&](const char*, const char*, auto value) { line += ',' + to_text(value); });
+  visit_numbers(record, [&](const char*, const char*, auto value) {
+    line += ',';
+    if (!std::isnan(static_cast<double>(value))) line += to_text(value);
+  });
   return line + ',' + record.digest + ",\n";
 }
 
@@ -56,8 +60,11 @@ Record record(const std::vector<std::string>& fields, const std::string& place) 
   r.reason = fields.back();
   if (!r.done) return r;
   at = 2;
-  visit_numbers(r, [&](const char*, const char*, auto& value) {
-    read_number(fields[at], value, fail_at);
+  visit_numbers(r, [&](const char* key, const char*, auto& value) {
+    if (fields[at].empty() && find_measure(key))  // the run was recorded before the measure existed
+      value = std::numeric_limits<std::remove_reference_t<decltype(value)>>::quiet_NaN();
+    else
+      read_number(fields[at], value, fail_at);
     ++at;
   });
   r.digest = fields[at];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "statistics/histogram.hpp"
@@ -139,8 +140,10 @@ bool StudySummary::add(const Record& record) {
     failures_.push_back({{"index", record.index}, {"reason", record.reason}});
     return true;
   }
-  for (std::size_t k = 0; k < measure_table.size(); ++k)
-    samples_[k].push_back(record.measures.*measure_table[k].member);
+  for (std::size_t k = 0; k < measure_table.size(); ++k) {
+    const double value = record.measures.*measure_table[k].member;
+    if (!std::isnan(value)) samples_[k].push_back(value);
+  }
   phi_.push_back(record.mean_phi_deg);
   wall_clock_ += record.wall_clock;
   steps_ += record.steps;
@@ -153,7 +156,7 @@ bool StudySummary::add(const Record& record) {
 MeasureSample StudySummary::sample(const Measure& measure) const {
   std::vector<double> noise;
   const auto add = [&](const Record& r) {
-    if (r.done) noise.push_back(r.measures.*measure.member);
+    if (r.done && !std::isnan(r.measures.*measure.member)) noise.push_back(r.measures.*measure.member);
   };
   if (origin_ && !replicates_.empty()) add(*origin_);
   std::for_each(replicates_.begin(), replicates_.end(), add);

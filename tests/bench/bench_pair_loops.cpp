@@ -27,33 +27,31 @@ struct Bed {
     walls = flat_walls(static_cast<int>(width), k.dx);
     soil_cells = sorted(soil, 2.3 * k.h);
     wall_cells = sorted(walls, 2.0 * k.h);
-    const auto chunks = [](const auto& first) {
-      return (first.size() + ClusterList::chunk_size - 2) / ClusterList::chunk_size;
-    };
     f.fixed = FixedPoint::covering(soil_cells.box(), k.h);
     f.soil.resize(soil.size());
     f.walls.resize(walls.size());
     f.soil_clusters = clusters(soil_cells, cluster_size());
     f.wall_clusters = clusters(wall_cells, cluster_size());
-    f.soil_soil.chunks.resize(chunks(f.soil_clusters));
-    f.soil_wall.chunks.resize(chunks(f.soil_clusters));
-    f.wall_soil.chunks.resize(chunks(f.wall_clusters));
-    pack_walls(f, walls);
+    f.soil_soil.resize(f.soil_clusters);
+    f.soil_wall.resize(f.soil_clusters);
+    f.wall_soil.resize(f.wall_clusters);
+    pack_walls(f, k, walls);
     pack_soil(f, k, soil, 0.0, {0, soil.size()});
     list();
   }
   void list() {
     const double reach = 2.0 * k.h + way_h * k.h;
     const auto n_soil = static_cast<std::uint32_t>(soil.size()), n_wall = static_cast<std::uint32_t>(walls.size());
-    for (std::size_t c = 0; c < f.soil_soil.chunks.size(); ++c) {
-      list_neighbours(f.fixed, f.soil_clusters, f.soil.motion, soil_cells, f.soil.motion, reach + way_h * k.h,
-                      0.3 * k.h, n_soil, c, f.soil_soil);
-      list_neighbours(f.fixed, f.soil_clusters, f.soil.motion, wall_cells, f.walls.place, reach, 0.0, n_wall, c,
-                      f.soil_wall);
+    const std::vector<float>&at_soil = f.soil.motion, &at_walls = f.walls.place;
+    const double wider = reach + way_h * k.h, moved = 0.3 * k.h;
+    const NeighbourSearch soil_soil{f.fixed, f.soil_clusters, at_soil, at_soil, soil_cells, wider, moved, n_soil};
+    const NeighbourSearch soil_wall{f.fixed, f.soil_clusters, at_soil, at_walls, wall_cells, reach, 0.0, n_wall};
+    const NeighbourSearch wall_soil{f.fixed, f.wall_clusters, at_walls, at_soil, soil_cells, reach, moved, n_soil};
+    for (std::size_t b = 0; b < f.soil_soil.batches.size(); ++b) {
+      list_neighbours(soil_soil, b, f.soil_soil);
+      list_neighbours(soil_wall, b, f.soil_wall);
     }
-    for (std::size_t c = 0; c < f.wall_soil.chunks.size(); ++c)
-      list_neighbours(f.fixed, f.wall_clusters, f.walls.place, soil_cells, f.soil.motion, reach, 0.3 * k.h, n_soil, c,
-                      f.wall_soil);
+    for (std::size_t b = 0; b < f.wall_soil.batches.size(); ++b) list_neighbours(wall_soil, b, f.wall_soil);
   }
   void stress() { stress_pass(f, k, soil, 0.0, false, {0, f.soil_clusters.size() - 1}); }
   void report(benchmark::State& state) const {
@@ -96,7 +94,7 @@ void WallStressPass(benchmark::State& state) {
   Bed bed;
   bed.stress();
   for (auto _ : state)
-    for (std::size_t c = 0; c < bed.f.wall_soil.chunks.size(); ++c) wall_stress_pass(bed.f, bed.k, bed.walls, c);
+    for (std::size_t c = 0; c < bed.f.wall_soil.batches.size(); ++c) wall_stress_pass(bed.f, bed.k, bed.walls, c);
   bed.report(state);
 }
 void MomentumPass(benchmark::State& state) {
@@ -112,8 +110,7 @@ void Move(benchmark::State& state) {
 }
 void PlainEvaluation(benchmark::State& state) {
   Bed bed;
-  RightHandSide rhs(bed.k);
-  for (auto _ : state) rhs.evaluate(bed.soil, bed.walls, bed.soil_cells, bed.wall_cells);
+  for (auto _ : state) evaluate_plain(bed.k, bed.soil, bed.walls, {bed.soil_cells, bed.wall_cells});
   bed.report(state);
 }
 

@@ -12,14 +12,25 @@ const GuardLimits limits{.head_bytes = 4000, .headers = 20, .target_bytes = 100,
 Head of(const std::string& line, const std::string& headers = "Host: a\r\n") {
   return judge(line + "\r\n" + headers + "\r\n", limits);
 }
-int status(const std::string& line, const std::string& headers = "Host: a\r\n") { return of(line, headers).status; }
+/// 0 where the header is valid.
+int verdict(const std::string& head, const GuardLimits& by) {
+  try {
+    judge(head, by);
+    return 0;
+  } catch (const BadRequest& bad) {
+    EXPECT_FALSE(bad.why.empty());
+    return bad.status;
+  }
+}
+int status(const std::string& line, const std::string& headers = "Host: a\r\n") {
+  return verdict(line + "\r\n" + headers + "\r\n", limits);
+}
 int header_status(const std::string& header) { return status("GET / HTTP/1.1", "Host: a\r\n" + header + "\r\n"); }
 
 TEST(Guard, AGoodRequestIsWrittenAnew) {
   const Head head = of("POST /jobs?x=1 HTTP/1.1",
                        "Host: a:80\r\nContent-Length: 5\r\nContent-Type: application/json\r\nRange: bytes=0-1,2-3\r\n"
                        "Cookie: c\r\nAccept-Encoding: gzip\r\nPrefer:  respond-async \r\nConnection: close\r\n");
-  ASSERT_EQ(head.status, 0) << head.why;
   EXPECT_EQ(head.method, "POST");
   EXPECT_EQ(head.body, 5u);
   EXPECT_FALSE(head.keep_alive);
@@ -113,16 +124,13 @@ TEST(Guard, NoRangeReachesTheLibrary) {
   std::string ranges = "Range: bytes=0-";
   for (int i = 0; i < 500; ++i) ranges += ",0-";
   const Head head = of("GET / HTTP/1.1", "Host: a\r\n" + ranges + "\r\n");
-  EXPECT_EQ(head.status, 0);
   EXPECT_EQ(head.rewritten.find("ange"), std::string::npos);
 }
 
 TEST(Guard, WithoutTokensOnlyLoopbackNamesAndNoOtherSites) {
   GuardLimits local = limits;
   local.loopback_names_only = true;
-  const auto code = [&](const std::string& headers) {
-    return judge("GET / HTTP/1.1\r\n" + headers + "\r\n", local).status;
-  };
+  const auto code = [&](const std::string& headers) { return verdict("GET / HTTP/1.1\r\n" + headers + "\r\n", local); };
   for (const char* host : {"localhost", "localhost:80", "127.0.0.1:8080", "[::1]:80"})
     EXPECT_EQ(code(std::string("Host: ") + host + "\r\n"), 0) << host;
   for (const char* host : {"evil.example", "127.0.0.1.evil.example", "localhost.evil.example:80", "10.0.0.1"})
@@ -131,7 +139,7 @@ TEST(Guard, WithoutTokensOnlyLoopbackNamesAndNoOtherSites) {
   EXPECT_EQ(code("Host: localhost:80\r\nOrigin: http://localhost:80\r\n"), 0);
 
   const auto absolute = [&](const std::string& authority, const std::string& headers) {
-    return judge("GET http://" + authority + "/ HTTP/1.1\r\n" + headers + "\r\n", local).status;
+    return verdict("GET http://" + authority + "/ HTTP/1.1\r\n" + headers + "\r\n", local);
   };
   EXPECT_EQ(absolute("localhost:80", "Host: localhost:80\r\n"), 0);
   EXPECT_EQ(absolute("[::1]:80", "Host: localhost\r\n"), 0);

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "base/digest.hpp"
-#include "http/problem.hpp"
-#include "http/router.hpp"
+#include "http/message.hpp"
+#include "http/service.hpp"
 #include "http/tokens.hpp"
 #include "options.hpp"
 #include "queue/database.hpp"
@@ -16,20 +16,21 @@
 namespace talus::service {
 namespace {
 
-TEST(Problem, EveryReasonHasItsRow) {
+TEST(Problem, EveryReasonHasItsType) {
   std::set<std::string> types;
-  for (int i = 0; i <= static_cast<int>(Reason::disk_full); ++i) {
-    const Answer answer = problem(Refusal(static_cast<Reason>(i), "why"), "");
+  for (const Reason* reason : reason::all) {
+    const Answer answer = problem(Refusal(*reason, "why"), "");
     const Json body = Json::parse(answer.body);
+    EXPECT_EQ(answer.status, reason->status);
     EXPECT_EQ(body["status"], answer.status);
     EXPECT_EQ(body["detail"], "why");
     types.insert(body["type"].get<std::string>());
   }
-  EXPECT_EQ(types.size(), static_cast<std::size_t>(Reason::disk_full) + 1);
+  EXPECT_EQ(types.size(), std::size(reason::all));
 }
 
 TEST(Problem, MediaTypeFollowsTheClient) {
-  const Refusal refusal(Reason::no_such_job, "x", {{"/a", "b"}});
+  const Refusal refusal(reason::no_such_job, "x", {{"/a", "b"}});
   EXPECT_EQ(problem(refusal, "*/*").type, "application/json");
   const Answer answer = problem(refusal, "application/problem+json, application/json");
   EXPECT_EQ(answer.type, "application/problem+json");
@@ -41,30 +42,31 @@ TEST(Problem, MediaTypeFollowsTheClient) {
 
 TEST(Problem, StorageAndTheUnexpected) {
   const auto status = [](auto thrown) { return problem(std::make_exception_ptr(thrown), "").status; };
-  EXPECT_EQ(status(StorageError(StorageError::Kind::full, "x")), 507);
-  EXPECT_EQ(status(StorageError(StorageError::Kind::read_only, "x")), 503);
+  EXPECT_EQ(status(StorageError("x", true)), 507);
+  EXPECT_EQ(status(StorageError("x")), 503);
   const Answer internal = problem(std::make_exception_ptr(std::runtime_error("secret /path")), "");
   EXPECT_EQ(internal.status, 500);
   EXPECT_EQ(internal.body.find("secret"), std::string::npos);
 }
 
 TEST(Routes, AreFoundByMethodAndPath) {
-  Router router;
-  router.add("GET", "/", Role::read, [](Exchange&) { return Answer{.status = 1}; });
-  router.add("GET", "/jobs/{}", Role::read, [](Exchange&) { return Answer{.status = 2}; });
-  router.add("DELETE", "/jobs/{}", Role::submit, [](Exchange&) { return Answer{.status = 3}; });
-  EXPECT_TRUE(router.find("GET", "/").handler);
-  EXPECT_EQ(router.find("GET", "/jobs/a").captured, (std::vector<std::string>{"a"}));
-  EXPECT_TRUE(router.find("HEAD", "/jobs/a").handler);
-  EXPECT_TRUE(router.find("GET", "/jobs/a/").handler);
-  EXPECT_EQ(router.find("DELETE", "/jobs/a").role, Role::submit);
-  const Router::Found wrong = router.find("PUT", "/jobs/a");
-  EXPECT_FALSE(wrong.handler);
+  const Handler handler = [](Exchange&) { return Answer{}; };
+  const Routes routes = {{"GET", "/", Role::read, handler},
+                         {"GET", "/jobs/{}", Role::read, handler},
+                         {"DELETE", "/jobs/{}", Role::submit, handler}};
+  EXPECT_EQ(find_route(routes, "GET", "/").route, &routes[0]);
+  EXPECT_EQ(find_route(routes, "GET", "/jobs/a").route, &routes[1]);
+  EXPECT_EQ(find_route(routes, "GET", "/jobs/a").captured, (std::vector<std::string>{"a"}));
+  EXPECT_EQ(find_route(routes, "HEAD", "/jobs/a").route, &routes[1]);
+  EXPECT_EQ(find_route(routes, "GET", "/jobs/a/").route, &routes[1]);
+  EXPECT_EQ(find_route(routes, "DELETE", "/jobs/a").route, &routes[2]);
+  const FoundRoute wrong = find_route(routes, "PUT", "/jobs/a");
+  EXPECT_FALSE(wrong.route);
   EXPECT_EQ(wrong.allow, "GET, HEAD, DELETE, OPTIONS");
-  EXPECT_EQ(router.find("GET", "/jobs/a/b").allow, "");
-  EXPECT_EQ(router.find("GET", "/jobs").allow, "");
-  const Router::Found server = router.find("OPTIONS", "*");
-  EXPECT_FALSE(server.handler);
+  EXPECT_EQ(find_route(routes, "GET", "/jobs/a/b").allow, "");
+  EXPECT_EQ(find_route(routes, "GET", "/jobs").allow, "");
+  const FoundRoute server = find_route(routes, "OPTIONS", "*");
+  EXPECT_FALSE(server.route);
   EXPECT_EQ(server.allow, "GET, HEAD, DELETE, OPTIONS");
 }
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "http/echo.hpp"
 #include "jobs/inputs.hpp"
 
 namespace talus::service {
@@ -73,13 +72,14 @@ TEST(EchoResults, OnlyWhatWasGivenAndWanted) {
 }
 
 TEST(Outputs, AreSelected) {
-  Checker check;
-  EXPECT_EQ(read_outputs(Json::parse(R"({"outputs": {"b": {}}})"), {"a", "b"}, check), (std::vector<std::string>{"b"}));
-  EXPECT_EQ(read_outputs(Json::parse("{}"), {"a", "b"}, check).size(), 2u);
-  EXPECT_TRUE(check.ok());
+  Faults faults;
+  EXPECT_EQ(read_outputs(Json::parse(R"({"outputs": {"b": {}}})"), {"a", "b"}, faults),
+            (std::vector<std::string>{"b"}));
+  EXPECT_EQ(read_outputs(Json::parse("{}"), {"a", "b"}, faults).size(), 2u);
+  EXPECT_TRUE(faults.empty());
   read_outputs(Json::parse(R"({"outputs": {"c": {}, "a": {"transmissionMode": "reference"}, "b": 1}})"), {"a", "b"},
-               check);
-  EXPECT_EQ(pointers([&] { check.finish(Reason::bad_request, ""); }),
+               faults);
+  EXPECT_EQ(pointers([&] { refuse_if_any(faults, reason::bad_request, ""); }),
             "/outputs/c /outputs/a/transmissionMode /outputs/b ");
 }
 

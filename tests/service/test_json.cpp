@@ -10,7 +10,7 @@ std::string why(const std::string& text) {
   try {
     parse_body(text);
   } catch (const Refusal& e) {
-    EXPECT_EQ(e.reason, Reason::bad_request);
+    EXPECT_EQ(e.reason, reason::bad_request);
     return e.what() + std::string(" | ") + e.faults.at(0).pointer + " " + e.faults.at(0).message;
   }
   return {};

@@ -7,7 +7,6 @@
 #include <iostream>
 #include <numeric>
 
-#include "jobs/statistics.hpp"
 #include "queue/store.hpp"
 #include "study/estimator.hpp"
 #include "study/publish.hpp"
@@ -33,7 +32,7 @@ Job million_job(Store& store, const std::filesystem::path& database) {
   SQLite::Statement insert(
       db,
       "WITH RECURSIVE i(k) AS (SELECT 0 UNION ALL SELECT k + 1 FROM i WHERE k < ?1 - 1) "
-      "INSERT INTO runs (job, floor, idx, rank, state, attempt, digest, reason, steps, wall_clock_s, "
+      "INSERT INTO runs (job, kind, idx, rank, state, attempt, digest, reason, steps, wall_clock_s, "
       "mean_friction_angle_deg, captured_variance" +
           values +
           ") SELECT 1, 0, k, k, "
@@ -82,7 +81,9 @@ TEST(MillionRealizations, HistogramAndTablesComeFromTheRecords) {
   EXPECT_EQ(estimator.failed(), 1000);
 
   begin = std::chrono::steady_clock::now();
-  const StudySummary summary = publish_study(store, job, plan, StudyPaths{directory.path()});
+  const StudySummary summary =
+      publish(StudyPaths{directory.path()}, plan, store.records(job.number, RunKind::realization),
+              store.records(job.number, RunKind::replicate));
   std::cout << "tables and study.json of a million realizations: " << seconds_since(begin) << " s\n";
   EXPECT_EQ(summary.done(), million - 1000);
   const std::vector<Record> back = read_csv(directory / "realizations.csv", "index");

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "queue/store.hpp"
+#include "study/publish.hpp"
 #include "support/measures.hpp"
 #include "temporary_directory.hpp"
 
@@ -26,9 +27,10 @@ struct StoreTest : testing::Test {
     return std::make_unique<Store>(
         directory / "queue.sqlite", directory / "jobs", [this] { return now; }, lease);
   }
-  Job add(const std::string& id, std::int64_t realizations, std::int64_t floor = 0, const std::string& subject = "a") {
+  Job add(const std::string& id, std::int64_t realizations, std::int64_t replicates = 0,
+          const std::string& subject = "a") {
     return *store->create(
-        {.id = id, .process = "influence-zone", .subject = subject, .planned = realizations, .floor = floor});
+        {.id = id, .process = "influence-zone", .subject = subject, .planned = realizations, .replicates = replicates});
   }
   Job job(const std::string& id) { return *store->job(id); }
   static Record result(double zone) {
@@ -138,8 +140,8 @@ TEST_F(StoreTest, ReopeningPutsBackEveryLeaseButNoResult) {
   store->claim();
   store = open();
   EXPECT_EQ(store->requeue_all(), 1);
-  EXPECT_EQ(store->census().runs[static_cast<std::size_t>(RunState::queued)], 2);
-  EXPECT_EQ(store->census().runs[static_cast<std::size_t>(RunState::done)], 1);
+  EXPECT_EQ(store->state_counts().runs[static_cast<std::size_t>(RunState::queued)], 2);
+  EXPECT_EQ(store->state_counts().runs[static_cast<std::size_t>(RunState::done)], 1);
   EXPECT_EQ(store->claim()->attempt, 2);
 }
 
@@ -199,12 +201,12 @@ TEST_F(StoreTest, AJobEndsOnlyWhenNothingOfItIsLeft) {
 
 TEST_F(StoreTest, AnOpenJobSaysWhyItWaits) {
   const Job made = add("one", 1);
-  store->note_waits(made.number, "waits for rain");
+  store->note_pending_reason(made.number, "waits for rain");
   EXPECT_EQ(job("one").message, "waits for rain");
   EXPECT_GT(job("one").version, made.version);
   store->accept(*store->claim(), result(1));
   store->finish(made.number, JobState::successful, "done");
-  store->note_waits(made.number, "waits for rain");
+  store->note_pending_reason(made.number, "waits for rain");
   EXPECT_EQ(job("one").message, "done");
 }
 
@@ -216,7 +218,6 @@ TEST_F(StoreTest, DismissingTakesTheRunsAway) {
   EXPECT_EQ(store->renew(std::vector{claim}).size(), 1u);
   EXPECT_FALSE(store->claim());
   EXPECT_EQ(job("one").state, JobState::dismissed);
-  EXPECT_FALSE(store->is_open(made.number));
 }
 
 TEST_F(StoreTest, RetryTakesOnlyTheFailedOnes) {
@@ -297,9 +298,10 @@ TEST_F(StoreTest, ADismissedJobIsNotExtended) {
   EXPECT_FALSE(store->claim());
 }
 
-TEST_F(StoreTest, AKeyIsRememberedWithTheJobOrNeither) {
+TEST_F(StoreTest, AKeyIsStoredResponseWithTheJobOrNeither) {
   const auto answer = [](const Job& j) {
-    return Remembered{.subject = "a", .key = "k", .body_hash = "h", .status = 201, .location = "/" + j.id, .body = "b"};
+    return StoredResponse{
+        .subject = "a", .key = "k", .body_hash = "h", .status = 201, .location = "/" + j.id, .body = "b"};
   };
   const NewJob first{.id = "one", .process = "echo", .subject = "a"};
   NewJob second = first;
@@ -307,19 +309,19 @@ TEST_F(StoreTest, AKeyIsRememberedWithTheJobOrNeither) {
   EXPECT_TRUE(store->create(first, answer));
   EXPECT_FALSE(store->create(second, answer));
   EXPECT_FALSE(store->job("two"));
-  EXPECT_EQ(store->remembered("a", "k")->location, "/one");
-  EXPECT_FALSE(store->remembered("b", "k"));
+  EXPECT_EQ(store->stored_response("a", "k")->location, "/one");
+  EXPECT_FALSE(store->stored_response("b", "k"));
 }
 
 TEST_F(StoreTest, AKeyIsForgottenAfterAWeek) {
   const auto with_key = [](const char* key) {
-    return [key](const Job&) { return Remembered{.subject = "a", .key = key, .body_hash = "h"}; };
+    return [key](const Job&) { return StoredResponse{.subject = "a", .key = key, .body_hash = "h"}; };
   };
   store->create({.id = "one", .process = "echo", .subject = "a"}, with_key("old"));
   now += Milliseconds{8} * 24 * 3600 * 1000;
   store->create({.id = "two", .process = "echo", .subject = "a"}, with_key("new"));
-  EXPECT_FALSE(store->remembered("a", "old"));
-  EXPECT_TRUE(store->remembered("a", "new"));
+  EXPECT_FALSE(store->stored_response("a", "old"));
+  EXPECT_TRUE(store->stored_response("a", "new"));
 }
 
 TEST_F(StoreTest, JobsAreListedNewestFirstByPages) {
@@ -386,16 +388,17 @@ TEST_F(StoreTest, AFullDatabaseIsToldAndNothingIsHalfWritten) {
   add("one", 1);
   SQLite::Database raw((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE);
   // As many pages as there are: the file cannot grow. The limit is of a connection, so the store gets one of its own.
-  EXPECT_THROW(
-      {
-        Database small(directory / "queue.sqlite");
-        small.write([](SQLite::Database& db) {
-          db.exec("PRAGMA max_page_count = 1");
-          db.exec("CREATE TABLE x (a TEXT)");
-          for (int i = 0; i < 1000; ++i) db.exec("INSERT INTO x VALUES (hex(randomblob(1000)))");
-        });
-      },
-      StorageError);
+  try {
+    Database small(directory / "queue.sqlite");
+    small.write([](SQLite::Database& db) {
+      db.exec("PRAGMA max_page_count = 1");
+      db.exec("CREATE TABLE x (a TEXT)");
+      for (int i = 0; i < 1000; ++i) db.exec("INSERT INTO x VALUES (hex(randomblob(1000)))");
+    });
+    ADD_FAILURE() << "it was written";
+  } catch (const StorageError& e) {
+    EXPECT_TRUE(e.disk_full);
+  }
   EXPECT_FALSE(raw.tableExists("x"));
   EXPECT_TRUE(store->job("one"));
 }
@@ -407,7 +410,8 @@ TEST_F(StoreTest, AFileThatCannotBeWrittenIsToldAsSuch) {
     database.write([](SQLite::Database& db) { db.exec("CREATE TABLE x (a TEXT)"); });
     ADD_FAILURE() << "it was written";
   } catch (const StorageError& e) {
-    EXPECT_EQ(e.kind, StorageError::Kind::read_only);
+    EXPECT_FALSE(e.disk_full);
+    EXPECT_STREQ(e.what(), "the queue cannot be written: attempt to write a readonly database");
   }
 }
 
@@ -418,6 +422,13 @@ TEST_F(StoreTest, WhatIsCommittedIsOnTheDisk) {
     EXPECT_EQ(db.execAndGet("PRAGMA synchronous").getInt(), 2);  // FULL
     EXPECT_EQ(db.execAndGet("PRAGMA foreign_keys").getInt(), 1);
   });
+}
+
+/// The rows of realizations.csv of a job, without the header.
+std::vector<std::string> table_of(Store& store, std::int64_t job) {
+  std::vector<std::string> rows;
+  store.records(job, RunKind::realization)([&](const Record& record) { rows.push_back(csv_line(record)); });
+  return rows;
 }
 
 TEST_F(StoreTest, ADatabaseFromBeforeAMeasureGetsItsColumn) {
@@ -434,6 +445,104 @@ TEST_F(StoreTest, ADatabaseFromBeforeAMeasureGetsItsColumn) {
   EXPECT_TRUE(std::isnan(run->result->measures.front_mass_999));
   EXPECT_TRUE(store->measure_sample(job("one"), *find_measure("front_mass_999_m"), {}).values.empty());
   EXPECT_EQ(store->measure_sample(job("one"), *find_measure("influence_zone_m"), {}).values, std::vector<double>{7.5});
+  EXPECT_EQ(table_of(*store, claim.study), std::vector<std::string>{"0,done,7.5,1,2,,4,25,0.9,9,0.5,d,\n"});
+}
+
+/// The tables of version 2, before runs had a level, with one job: realization 0 and replicate 1 are done, realization
+/// 1 has failed, 2 is leased and 3 waits.
+constexpr const char* version_2 = R"sql(
+CREATE TABLE jobs (
+  number INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, process TEXT NOT NULL, subject TEXT NOT NULL,
+  title TEXT NOT NULL, inputs TEXT NOT NULL,
+  state TEXT NOT NULL CHECK (state IN ('accepted', 'running', 'successful', 'failed', 'dismissed')),
+  message TEXT NOT NULL DEFAULT '', seed INTEGER NOT NULL, planned INTEGER NOT NULL CHECK (planned >= 0),
+  floor INTEGER NOT NULL CHECK (floor >= 0), max_failed_share REAL NOT NULL, may_stop_early INTEGER NOT NULL,
+  case_hash TEXT NOT NULL, particles REAL NOT NULL, steps REAL NOT NULL, created INTEGER NOT NULL,
+  updated INTEGER NOT NULL, started INTEGER, finished INTEGER, done INTEGER NOT NULL DEFAULT 0,
+  failed INTEGER NOT NULL DEFAULT 0, floor_made INTEGER NOT NULL DEFAULT 0, version INTEGER NOT NULL DEFAULT 1,
+  served INTEGER NOT NULL DEFAULT 0) STRICT;
+CREATE INDEX jobs_by_state ON jobs (state, number);
+CREATE TABLE runs (
+  job INTEGER NOT NULL REFERENCES jobs (number) ON DELETE CASCADE, floor INTEGER NOT NULL CHECK (floor IN (0, 1)),
+  idx INTEGER NOT NULL CHECK (idx >= 0), rank INTEGER NOT NULL,
+  state TEXT NOT NULL DEFAULT 'queued' CHECK (state IN ('queued', 'leased', 'done', 'failed')),
+  attempt INTEGER NOT NULL DEFAULT 0, crashes INTEGER NOT NULL DEFAULT 0, lease_until INTEGER NOT NULL DEFAULT 0,
+  influence_zone_m REAL, front_connected_m REAL, front_mass_99_m REAL, front_mass_999_m REAL, centre_of_mass_x_m REAL,
+  mean_friction_angle_deg REAL, steps INTEGER, wall_clock_s REAL, digest TEXT, reason TEXT, exit_code INTEGER,
+  signal INTEGER, log_tail TEXT, captured_variance REAL, PRIMARY KEY (job, floor, idx)) STRICT, WITHOUT ROWID;
+CREATE INDEX runs_queued ON runs (job, rank) WHERE state = 'queued';
+CREATE INDEX runs_leased ON runs (job) WHERE state = 'leased';
+CREATE INDEX runs_measures ON runs (job, floor, idx, state, influence_zone_m, front_connected_m, front_mass_99_m,
+                                    front_mass_999_m, centre_of_mass_x_m) WHERE state = 'done';
+CREATE TABLE remembered (
+  subject TEXT NOT NULL, key TEXT NOT NULL, body_hash TEXT NOT NULL, status INTEGER NOT NULL, location TEXT NOT NULL,
+  body TEXT NOT NULL, created INTEGER NOT NULL, PRIMARY KEY (subject, key)) STRICT, WITHOUT ROWID;
+PRAGMA user_version = 2;
+INSERT INTO jobs (id, process, subject, title, inputs, state, seed, planned, floor, max_failed_share, may_stop_early,
+                  case_hash, particles, steps, created, updated, started, done, failed, floor_made)
+  VALUES ('old', 'influence-zone', 'a', 't', '{}', 'running', 7, 4, 1, 0.5, 0, 'h', 10, 20, 1, 2, 3, 1, 1, 1);
+INSERT INTO runs (job, floor, idx, rank, state, attempt, influence_zone_m, front_connected_m, front_mass_99_m,
+                  front_mass_999_m, centre_of_mass_x_m, mean_friction_angle_deg, captured_variance, steps, wall_clock_s,
+                  digest)
+  VALUES (1, 0, 0, 0, 'done', 1, 7.5, 1, 2, 3, 4, 25, NULL, 9, 0.5, 'd'),
+         (1, 1, 1, 1, 'done', 1, 7.25, 1, 2, 3, 4, 25, 0.9, 9, 0.5, 'e');
+INSERT INTO runs (job, floor, idx, rank, state, attempt, crashes, reason, exit_code, log_tail)
+  VALUES (1, 0, 1, 2, 'failed', 2, 1, 'diverged', 4, 'tail');
+INSERT INTO runs (job, floor, idx, rank, state, attempt, lease_until)
+  VALUES (1, 0, 2, 3, 'leased', 1, 9000000), (1, 0, 3, 4, 'queued', 0, 0);
+INSERT INTO remembered VALUES ('a', 'k', 'h', 201, '/old', 'b', 1);
+)sql";
+
+TEST_F(StoreTest, ADatabaseFromBeforeLevelsIsMigrated) {
+  store.reset();
+  for (const char* suffix : {"", "-wal", "-shm"})
+    std::filesystem::remove(directory / (std::string("queue.sqlite") + suffix));
+  SQLite::Database((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(version_2);
+  store = open();
+  const Job old = job("old");
+  EXPECT_EQ(old.replicates, 1);
+  EXPECT_EQ(old.replicates_ended, 1);
+  EXPECT_EQ(old.done, 1);
+  EXPECT_EQ(store->stored_response("a", "k")->location, "/old");
+  EXPECT_EQ(store->measure_sample(old, measure_table[0], {}).values, std::vector<double>{7.5});
+  EXPECT_EQ(store->measure_sample(old, measure_table[0], {}).noise, (std::vector<double>{7.5, 7.25}));
+  EXPECT_EQ(table_of(*store, old.number),
+            (std::vector<std::string>{"0,done,7.5,1,2,3,4,25,0.9,9,0.5,d,\n", "1,failed,,,,,,,,,,,\"diverged\"\n"}));
+  const service::Run failed = *store->run(old.number, realization(1));
+  EXPECT_EQ(failed.key.level, 0);
+  EXPECT_EQ(failed.failure->exit_code, 4);
+  EXPECT_EQ(store->claim()->key, realization(3));
+  EXPECT_EQ(store->requeue_all(), 2);
+  const Claim again = *store->claim();
+  EXPECT_EQ(again.key, realization(2));
+  EXPECT_EQ(again.attempt, 2);
+  SQLite::Database raw((directory / "queue.sqlite").string());
+  EXPECT_FALSE(SQLite::Statement(raw, "PRAGMA foreign_key_check(runs)").executeStep());
+}
+
+TEST_F(StoreTest, RunsOfSeveralLevelsAreDistinct) {
+  const Job made = add("one", 1);
+  SQLite::Database((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE)
+      .exec("INSERT INTO runs (job, level, kind, idx, rank) VALUES (1, 1, 0, 0, 1)");
+  store->accept(*store->claim(), result(1));
+  const Claim fine = *store->claim();
+  EXPECT_EQ(fine.key, (RunKey{.level = 1}));
+  store->accept(fine, result(2));
+  EXPECT_EQ(store->run(made.number, fine.key)->result->measures.influence_zone, 2);
+  EXPECT_EQ(store->run(made.number, realization(0))->result->measures.influence_zone, 1);
+  EXPECT_EQ(store->measure_sample(job("one"), measure_table[0], {}).values, std::vector<double>{1});
+}
+
+TEST_F(StoreTest, TheIndexCoversTheHistogram) {
+  SQLite::Database raw((directory / "queue.sqlite").string());
+  SQLite::Statement plan(raw,
+                         "EXPLAIN QUERY PLAN SELECT influence_zone_m FROM runs INDEXED BY runs_measures "
+                         "WHERE job = 1 AND level = 0 AND state = 'done' AND influence_zone_m IS NOT NULL "
+                         "AND kind = 0 ORDER BY idx");
+  ASSERT_TRUE(plan.executeStep());
+  EXPECT_EQ(plan.getColumn("detail").getString(),
+            "SEARCH runs USING COVERING INDEX runs_measures (job=? AND level=? AND kind=?)");
+  EXPECT_FALSE(plan.executeStep());  // no sort
 }
 
 TEST_F(StoreTest, ANewerDatabaseIsRefused) {

@@ -33,6 +33,7 @@ inline Soil random_soil(int nx, int ny, double dx, unsigned seed, int materials 
     s.rho[i] = 2000 * (1 + 0.02 * u(engine));
     s.m[i] = 2000 * dx * dx * (1 + 0.3 * u(engine));
     s.tan_phi[i] = 0.5 + 0.2 * u(engine);
+    s.c[i] = 700 + 300 * u(engine);
     s.txx[i] = 900 * u(engine);
     s.tyy[i] = 900 * u(engine);
     s.txy[i] = 900 * u(engine);
@@ -56,7 +57,7 @@ inline CellList sorted(Soil& soil, double reach) {
 /// Evaluates once, by the loops that the constants ask for.
 inline void evaluate(const FlowConstants& k, Soil& soil, WallParticles& walls, const CellList& soil_cells,
                      const CellList& wall_cells) {
-  if (!VectorisedFlow::serves(k.numerics)) return RightHandSide(k).evaluate(soil, walls, soil_cells, wall_cells);
+  if (!VectorisedFlow::serves(k.numerics)) return evaluate_plain(k, soil, walls, {soil_cells, wall_cells});
   VectorisedFlow flow(k, soil);
   flow.rebuild_neighbour_lists(soil, walls, {soil_cells, wall_cells}, 0.0, 0.0);
   flow.evaluate(soil, walls, 0.0, true);
@@ -73,6 +74,7 @@ inline FlowConstants constants(double dx, Vec2 g = {0.0, -9.81},
   k.numerics.precision =
       Precision::full;  // formulas are tested to the last digits; the vectorised loops have tests of their own
   k.soils = constitutive_parameters(materials, {}, k.c_s);
+  k.boundaries.emplace_back();
   return k;
 }
 
@@ -88,6 +90,7 @@ inline WallParticles flat_walls(int nx, double dx) {
       w.ny.push_back(1);
       w.depth.push_back((layer + 0.5) * dx);
     }
+  w.boundary.assign(w.x.size(), 0);
   for_each_wall_real(w, [&](const char*, auto& a) { a.assign(w.x.size(), 0.0); });
   return w;
 }
@@ -98,6 +101,7 @@ inline CellList sorted(WallParticles& w, double reach) {
   cells.build(w.x, w.y, reach);
   std::vector<double> scratch;
   for (auto* a : {&w.x, &w.y, &w.nx, &w.ny, &w.depth}) permute(*a, cells.order(), scratch);
+  permute(w.boundary, cells.order(), scratch);
   return cells;
 }
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "case/aliases.hpp"
 #include "case/overrides.hpp"
 #include "documents.hpp"
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "case/checks.hpp"
 #include "documents.hpp"
 
 namespace talus {

@@ -36,7 +36,7 @@ TEST(LoadCase, ConvertsDegreesToRadians) {
   Json document = with("/walls/slip", "friction", with("/walls/friction_angle_deg", 15));
   const Case c = test::load(document).value;
   EXPECT_NEAR(c.model.materials[0].phi, std::numbers::pi / 6, 1e-15);
-  EXPECT_NEAR(c.model.walls.phi, std::numbers::pi / 12, 1e-15);
+  EXPECT_NEAR(c.model.boundaries.at(0).phi, std::numbers::pi / 12, 1e-15);
 }
 
 TEST(LoadCase, EveryNumberReachesItsMember) {
@@ -69,7 +69,8 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
   EXPECT_EQ(m.numerics,
             (Numerics{KernelShape::wendland_c2, 1.25, 8.0, 9, 10, Continuity::mass, DensityFilter::delta_sph, 11, 0.12,
                       false, InitialPressure::stress_free, Integrator::leapfrog, Precision::full, 0.13}));
-  EXPECT_EQ(m.walls, (Walls{WallContact::approaching, WallSlip::free_slip, 0.0, 14, 15}));
+  EXPECT_EQ(m.walls, (Walls{WallContact::approaching, 14, 15}));
+  EXPECT_EQ(m.boundaries.at(0).slip, WallSlip::free_slip);
   EXPECT_EQ(m.time, (TimeControl{16, {}, 17.0, {}, StopAtRest{18, 19}}));
 }
 

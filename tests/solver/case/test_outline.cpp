@@ -10,36 +10,36 @@ namespace {
 
 using Points = std::vector<Vec2>;
 
-TEST(SelfMeeting, FindsCrossingTouchingAndFolding) {
-  EXPECT_FALSE(self_meeting(Points{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, true));
-  EXPECT_FALSE(self_meeting(Points{{0, 0}, {1, 0}, {2, 0}, {2, 1}}, true)) << "a straight corner is no fold";
-  const auto bow_tie = self_meeting(Points{{0, 0}, {2, 2}, {2, 0}, {0, 2}}, true);
+TEST(SelfIntersection, FindsCrossingTouchingAndFolding) {
+  EXPECT_FALSE(self_intersection(Points{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, true));
+  EXPECT_FALSE(self_intersection(Points{{0, 0}, {1, 0}, {2, 0}, {2, 1}}, true)) << "a straight corner is no fold";
+  const auto bow_tie = self_intersection(Points{{0, 0}, {2, 2}, {2, 0}, {0, 2}}, true);
   ASSERT_TRUE(bow_tie);
   EXPECT_EQ(bow_tie->first, 0u);
   EXPECT_EQ(bow_tie->second, 2u);
-  EXPECT_TRUE(self_meeting(Points{{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}, true)) << "a vertex on another edge";
-  EXPECT_TRUE(self_meeting(Points{{0, 0}, {2, 0}, {1, 0}, {1, 3}}, true)) << "an edge folded back";
-  EXPECT_TRUE(self_meeting(Points{{0, 0}, {2, 0}, {2, 0}, {1, 3}}, true)) << "a vertex repeated";
-  EXPECT_TRUE(self_meeting(Points{{0, 0}, {2, 0}, {1, 0}}, true)) << "a triangle without area";
-  EXPECT_TRUE(self_meeting(Points{{0, 0}, {4, 0}, {4, 4}, {2, 2}, {4, 4}, {0, 4}}, true)) << "a spike to a vertex";
+  EXPECT_TRUE(self_intersection(Points{{0, 0}, {4, 0}, {4, 4}, {2, 0}, {0, 4}}, true)) << "a vertex on another edge";
+  EXPECT_TRUE(self_intersection(Points{{0, 0}, {2, 0}, {1, 0}, {1, 3}}, true)) << "an edge folded back";
+  EXPECT_TRUE(self_intersection(Points{{0, 0}, {2, 0}, {2, 0}, {1, 3}}, true)) << "a vertex repeated";
+  EXPECT_TRUE(self_intersection(Points{{0, 0}, {2, 0}, {1, 0}}, true)) << "a triangle without area";
+  EXPECT_TRUE(self_intersection(Points{{0, 0}, {4, 0}, {4, 4}, {2, 2}, {4, 4}, {0, 4}}, true)) << "a spike to a vertex";
 }
 
-TEST(SelfMeeting, AnOpenLineMayEndWhereARingMayNot) {
+TEST(SelfIntersection, AnOpenLineMayEndWhereARingMayNot) {
   const Points u = {{0, 0}, {0, 2}, {2, 2}, {2, 0}};
-  EXPECT_FALSE(self_meeting(u, false));
+  EXPECT_FALSE(self_intersection(u, false));
   const Points hook = {{0, 0}, {2, 0}, {2, 2}, {1, -1}};
-  EXPECT_TRUE(self_meeting(hook, false));
+  EXPECT_TRUE(self_intersection(hook, false));
 }
 
-TEST(SelfMeeting, StarOfManyVerticesIsSimpleUntilTwoAreSwapped) {
+TEST(SelfIntersection, StarOfManyVerticesIsSimpleUntilTwoAreSwapped) {
   Points star;
   for (int k = 0; k < 500; ++k) {
     const double angle = 2 * M_PI * k / 500, r = k % 2 == 0 ? 1.0 : 0.8;
     star.push_back({r * std::cos(angle), r * std::sin(angle)});
   }
-  EXPECT_FALSE(self_meeting(star, true));
+  EXPECT_FALSE(self_intersection(star, true));
   std::swap(star[100], star[103]);
-  EXPECT_TRUE(self_meeting(star, true));
+  EXPECT_TRUE(self_intersection(star, true));
 }
 
 TEST(Areas, AreSignedAndShared) {
@@ -79,6 +79,14 @@ TEST(BetweenSurfaces, TakesCliffsAndShortSurfaces) {
   EXPECT_TRUE(between_surfaces(Points{{0, 0}, {1, 0}}, Points{{2, -1}, {3, -1}}).empty()) << "no common extent";
 }
 
+TEST(BedHeight, IsLinearBetweenVerticesAndConstantBeyondTheEnds) {
+  const Points bed = {{0, 10}, {10, 0}, {40, 0}};
+  EXPECT_DOUBLE_EQ(bed_height(bed, 2.5), 7.5);
+  EXPECT_DOUBLE_EQ(bed_height(bed, 30), 0);
+  EXPECT_DOUBLE_EQ(bed_height(bed, -3), 10);
+  EXPECT_DOUBLE_EQ(bed_height(bed, 99), 0);
+}
+
 /// Deepest point below the bed, by sampling the outline densely.
 double sampled_depth(const Points& outline, const Points& bed) {
   double worst = 0.0;
@@ -107,7 +115,7 @@ TEST(DepthBelowBed, AgreesWithDenseSampling) {
 
 TEST(DepthBelowBed, SeesAHumpUnderAnEdge) {
   const Points bed = {{0, 0}, {5, 1}, {10, 0}}, outline = {{1, 0.2}, {9, 0.2}, {9, 3}, {1, 3}};
-  const Intrusion in = depth_below_bed(outline, bed);
+  const Penetration in = depth_below_bed(outline, bed);
   EXPECT_NEAR(in.depth, 0.8, 1e-12);
   EXPECT_EQ(in.at.x, 5.0);
   EXPECT_EQ(depth_below_bed(Points{{1, 1}, {9, 1}, {5, 3}}, bed).depth, 0.0);

@@ -35,8 +35,8 @@ TEST(ReadCsv, NamesFileAndLine) {
 TEST(ReadCsv, KnowsTheLineOfEachVertex) {
   Faults faults;
   const Vertices v = read_csv("x,y\n\n0,1\n# remark\n2,3\n", "f.csv", faults);
-  EXPECT_EQ(v.place(0), "f.csv:3");
-  EXPECT_EQ(v.place(1), "f.csv:5");
+  EXPECT_EQ(v.location(0), "f.csv:3");
+  EXPECT_EQ(v.location(1), "f.csv:5");
 }
 
 TEST(ReadCsv, StopsAtItsLimit) {

@@ -58,9 +58,9 @@ class Basics(Directory):
         self.assertIn("Exit codes: 0 ok, 1 internal error, 2 usage, 3 bad case, 5 input/output\n", talus("help", "field").stdout)
 
     def test_every_alias_works(self):
-        """The list of solver/cli/help.hpp and solver/case/aliases.hpp."""
+        """The list of solver/cli/help.hpp and solver/case/overrides.hpp."""
         declared = re.findall(r'\{"(\S+)", "(\S+)"\}', "".join(
-            (SOURCE / f"solver/{file}").read_text() for file in ("cli/help.hpp", "case/aliases.hpp")))
+            (SOURCE / f"solver/{file}").read_text() for file in ("cli/help.hpp", "case/overrides.hpp")))
         tried = [("--realisation", "--realization"), ("--realisations", "--realizations"),
                  ("study.realisations", "study.realizations"), ("rheology.yield=regularised", "rheology.yield=regularized")]
         self.assertEqual(sorted(declared), sorted(tried))

@@ -5,7 +5,7 @@
 
 #include "example_study.hpp"
 #include "figures/charts.hpp"
-#include "figures/gnuplot.hpp"
+#include "figures/sheet.hpp"
 #include "reading.hpp"
 #include "temporary_directory.hpp"
 

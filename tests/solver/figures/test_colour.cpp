@@ -10,10 +10,10 @@ namespace {
 
 TEST(Colour, ValuesAreInTheUnitOfTheColourBar) {
   const Frame frame = test::three_particles();
-  EXPECT_DOUBLE_EQ(colour_value(frame, 1, Colour::speed), 1.0);
-  EXPECT_DOUBLE_EQ(colour_value(frame, 1, Colour::displacement), 5.0);
-  EXPECT_DOUBLE_EQ(colour_value(frame, 2, Colour::pressure), 25.0);
-  EXPECT_NEAR(colour_value(frame, 2, Colour::friction_angle), 30.0, 1e-12);
+  EXPECT_DOUBLE_EQ(scale_of(Colour::speed).value(frame, 1), 1.0);
+  EXPECT_DOUBLE_EQ(scale_of(Colour::displacement).value(frame, 1), 5.0);
+  EXPECT_DOUBLE_EQ(scale_of(Colour::pressure).value(frame, 2), 25.0);
+  EXPECT_NEAR(scale_of(Colour::friction_angle).value(frame, 2), 30.0, 1e-12);
 }
 
 TEST(Colour, RangesAreRoundAndNeverEmpty) {

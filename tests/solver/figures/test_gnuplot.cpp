@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "figures/gnuplot.hpp"
+#include "figures/sheet.hpp"
 #include "reading.hpp"
 #include "support/error.hpp"
 #include "temporary_directory.hpp"

@@ -33,13 +33,6 @@ TEST(Ground, ARingIsWalkedWhole) {
   EXPECT_EQ(line.front(), line.back());
 }
 
-TEST(Ground, BedHeightInterpolates) {
-  EXPECT_DOUBLE_EQ(bed_height(slope, 2.5), 7.5);
-  EXPECT_DOUBLE_EQ(bed_height(slope, 30), 0);
-  EXPECT_DOUBLE_EQ(bed_height(slope, -3), 10);
-  EXPECT_DOUBLE_EQ(bed_height(slope, 99), 0);
-}
-
 TEST(Ground, HatchingLiesBehindTheLineAtEvenSteps) {
   // The corner is passed: 3 + 4 long, strokes at 2, 4, 6.
   const std::vector<Stroke> strokes = hatching({{0, 3}, {0, 0}, {4, 0}}, 2.0, 0.5);

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "figures/layout.hpp"
+#include "figures/profile.hpp"
 
 namespace talus::figures {
 namespace {

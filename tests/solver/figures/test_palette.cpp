@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "figures/palette.hpp"
+#include "figures/colour.hpp"
 #include "reading.hpp"
 
 namespace talus::figures {

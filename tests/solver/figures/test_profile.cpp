@@ -4,8 +4,8 @@
 #include <numbers>
 
 #include "example_frame.hpp"
-#include "figures/gnuplot.hpp"
 #include "figures/profile.hpp"
+#include "figures/sheet.hpp"
 #include "reading.hpp"
 #include "support/error.hpp"
 #include "temporary_directory.hpp"
@@ -18,6 +18,12 @@ using test::contains;
 using test::three_particles;
 
 const Terrain slope{.bed = {{0, 10}, {10, 0}, {40, 0}}, .wall_top = 12, .left_boundary = 1.0};
+
+void plot_one(const Frame& frame, const Terrain& terrain, double dx, Colour colour, const std::filesystem::path& path,
+              const Stamps& stamps) {
+  const Snapshot shot{&frame, colour, {}};
+  plot_profiles({&shot, 1}, terrain, dx, path, stamps);
+}
 
 TEST(Profile, DrawsTheSoilAndNothingElse) {
   const Frame frame = three_particles();
@@ -73,7 +79,7 @@ TEST(Profile, PngHasTheSizeOfTheCanvasTimesTwo) {
   const Frame frame = three_particles();
   const Snapshot shot{&frame, Colour::pressure, {}};
   const std::filesystem::path path = directory.path() / "a.png";
-  plot_profile(frame, slope, 0.5, Colour::pressure, path, {"title", "", ""});
+  plot_one(frame, slope, 0.5, Colour::pressure, path, {"title", "", ""});
   const Canvas canvas = profile_sheet({&shot, 1}, slope, 0.5, {}).canvas;
   EXPECT_EQ(test::png_size(path),
             (test::Size{static_cast<std::uint32_t>(2 * canvas.width), static_cast<std::uint32_t>(2 * canvas.height)}));
@@ -89,7 +95,7 @@ TEST(Profile, SvgOfManyParticlesStaysSmall) {
   }
   frame.n_soil = frame.position.size();
   const std::filesystem::path path = directory.path() / "a.svg";
-  plot_profile(frame, {.bed = {{0, 0}, {40, 0}}}, 0.1, Colour::friction_angle, path, {"title", "", ""});
+  plot_one(frame, {.bed = {{0, 0}, {40, 0}}}, 0.1, Colour::friction_angle, path, {"title", "", ""});
   const std::string svg = read_file(path, 1'000'000);
   EXPECT_TRUE(contains(svg, "data:image/png;base64,"));
   EXPECT_TRUE(contains(svg, "font-weight=\"bold\""));
@@ -112,7 +118,7 @@ TEST(Profile, GnuplotHasNothingToSay) {
 TEST(Profile, AFrameWithoutSoilIsDrawnAsTerrain) {
   const test::TemporaryDirectory directory;
   const Frame empty;
-  plot_profile(empty, slope, 0.5, Colour::speed, directory.path() / "a.png", {"title", "", ""});
+  plot_one(empty, slope, 0.5, Colour::speed, directory.path() / "a.png", {"title", "", ""});
   EXPECT_GT(test::png_size(directory.path() / "a.png").width, 0u);
 }
 
@@ -131,7 +137,7 @@ TEST(Profile, HostileTitlesAreText) {
                                         "END_OF_DATA"};
   for (const std::string& title : titles) {
     const std::filesystem::path path = directory.path() / "a.svg";
-    plot_profile(frame, slope, 0.5, Colour::speed, path, {title, title, title});
+    plot_one(frame, slope, 0.5, Colour::speed, path, {title, title, title});
     const std::string svg = read_file(path, 1'000'000);
     EXPECT_FALSE(contains(svg, "<script>"));
     EXPECT_FALSE(std::filesystem::exists(canary)) << title;
@@ -140,7 +146,7 @@ TEST(Profile, HostileTitlesAreText) {
 
 TEST(Profile, OtherEndingsAreRefused) {
   const test::TemporaryDirectory directory;
-  EXPECT_THROW(plot_profile(three_particles(), slope, 0.5, Colour::speed, directory.path() / "a.jpg", {}), IoError);
+  EXPECT_THROW(plot_one(three_particles(), slope, 0.5, Colour::speed, directory.path() / "a.jpg", {}), IoError);
   EXPECT_FALSE(std::filesystem::exists(directory.path() / "a.jpg"));
 }
 

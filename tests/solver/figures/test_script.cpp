@@ -3,8 +3,7 @@
 #include <array>
 #include <limits>
 
-#include "figures/gnuplot.hpp"
-#include "figures/script.hpp"
+#include "figures/sheet.hpp"
 #include "reading.hpp"
 
 namespace talus::figures {

@@ -62,9 +62,9 @@ TEST(StudyFiles, FaultsNameTheFile) {
   EXPECT_TRUE(contains(error_of(directory.path()), "study.json"));
   test::write_example_study(directory.path(), test::example_plan(3), test::example_records(3, false), {});
   write_file_atomically(directory / "realizations.csv",
-                        "index,status,influence_zone_m,mean_friction_angle_deg\n0,done,far,25\n");
+                        csv_header("index") + "0,done,far,1,1,1,1,25,1,100,1,0123456789abcdef,\n");
   EXPECT_TRUE(contains(error_of(directory.path()), "\"far\" is not a number"));
-  write_file_atomically(directory / "realizations.csv", "index,status\n0,done,1,2\n");
+  write_file_atomically(directory / "realizations.csv", csv_header("index") + "0,done,1\n");
   EXPECT_TRUE(contains(error_of(directory.path()), "realizations.csv:2"));
 }
 

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "integrate/plain_flow.hpp"
-#include "integrate/plain_state.hpp"
 #include "integrate/vectorised_flow.hpp"
 #include "random_soil.hpp"
 
@@ -33,7 +32,7 @@ void rates(Soil& s) {
   s.drho[0] = -s.x[0] * s.rho[0];
   s.dtxx[0] = -s.txx[0] + s.x[0];
 }
-void step(Integrator integrator, Soil& soil, StepStart& start, double dt, const Evaluate& evaluate) {
+void step(Integrator integrator, Soil& soil, Soil& start, double dt, const Evaluate& evaluate) {
   PlainState state(soil, start, evaluate);
   advance(integrator, state, dt);
 }
@@ -43,7 +42,7 @@ struct Errors {
 };
 Errors errors_after_one_second(Integrator integrator, int n) {
   Soil s = one_particle();
-  StepStart start;
+  Soil start;
   rates(s);  // the leapfrog predicts with the rates of the step before
   for (int k = 0; k < n; ++k) step(integrator, s, start, 1.0 / n, rates);
   const double txx = 0.5 * (std::cos(1.0) + std::sin(1.0));  // particular solution of t' = -t + cos, homogeneous part 0
@@ -65,7 +64,7 @@ TEST(Integrator, LeapfrogIsOfSecondOrder) { expect_second_order(Integrator::leap
 
 TEST(Integrator, EvaluationsPerStep) {
   Soil s = one_particle();
-  StepStart start;
+  Soil start;
   int calls = 0;
   const Evaluate count = [&](Soil&) { ++calls; };
   for (const auto integrator : {Integrator::rk2, Integrator::leapfrog}) {
@@ -80,7 +79,7 @@ TEST(Integrator, EvaluationsPerStep) {
 TEST(Integrator, FreeFallIsExact) {
   for (const auto integrator : {Integrator::rk2, Integrator::leapfrog}) {
     Soil s = one_particle();
-    StepStart start;
+    Soil start;
     const Evaluate gravity = [](Soil& soil) {
       soil.ax[0] = 0;
       soil.ay[0] = -9.81;
@@ -96,7 +95,7 @@ TEST(Integrator, FreeFallIsExact) {
 TEST(Integrator, InactiveParticlesStay) {
   Soil s = one_particle();
   s.n_active = 0;
-  StepStart start;
+  Soil start;
   const Evaluate nothing = [](Soil&) {};
   step(Integrator::rk2, s, start, 0.1, nothing);
   EXPECT_EQ(s.y[0], 0.0);

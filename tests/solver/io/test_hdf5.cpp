@@ -45,7 +45,7 @@ TEST(Hdf5, FilesInMemoryAreApart) {
 
 TEST(Hdf5, RowsGrowAndShrink) {
   const hdf5::Id file = hdf5::create_in_memory();
-  hdf5::create_rows<double>(file, "pairs", 2, 3, hdf5::Filter::compressed);
+  hdf5::create_rows(file, "pairs", hdf5::type<double>(), 2, 3, hdf5::Filter::compressed);
   hdf5::append_rows<double>(file, "pairs", Doubles{1, 2, 3, 4, 5, 6, 7, 8});
   hdf5::append_rows<double>(file, "pairs", Doubles{9, 10});
   hdf5::append_rows<double>(file, "pairs", Doubles{});
@@ -54,7 +54,7 @@ TEST(Hdf5, RowsGrowAndShrink) {
   hdf5::truncate_rows(file, "pairs", 2);
   hdf5::append_rows<double>(file, "pairs", Doubles{11, 12});
   EXPECT_EQ(hdf5::read_array<double>(file, "pairs"), (Doubles{1, 2, 3, 4, 11, 12}));
-  EXPECT_NE(io_error([&] { hdf5::read_rows<double>(file, "pairs", 2, 2); }).find("has 3 rows, 4 are wanted"),
+  EXPECT_NE(io_error([&] { hdf5::read_rows<double>(file, "pairs", 2, 2); }).find("has 3 rows, 4 are needed"),
             std::string::npos);
   EXPECT_NE(io_error([&] { hdf5::truncate_rows(file, "pairs", 4); }).find("only 3 rows"), std::string::npos);
 }
@@ -78,7 +78,7 @@ TEST(Hdf5, AttributesAreReplaced) {
   hdf5::write_text_attribute(file, "text", "UnstructuredGrid");
   EXPECT_EQ(hdf5::read_text_attribute(file, "empty"), "");
   EXPECT_EQ(hdf5::read_text_attribute(file, "text"), "UnstructuredGrid");
-  hdf5::write_attribute_array<double>(file, "two", Doubles{1, 2});
+  hdf5::write_attribute_list<double>(file, "two", Doubles{1, 2});
   EXPECT_NE(io_error([&] { hdf5::read_attribute<double>(file, "two"); }).find("not a single value"), std::string::npos);
   EXPECT_NE(io_error([&] { hdf5::read_text_attribute(file, "n"); }).find("not a text"), std::string::npos);
 }
@@ -87,14 +87,11 @@ TEST(Hdf5, AnArrayThatClaimsTooMuchIsNotBelieved) {
   const hdf5::Id file = hdf5::create_in_memory();
   const hsize_t dims[] = {hsize_t{1} << 40};
   const hsize_t chunk[] = {1024};
-  const hdf5::Id space(H5Screate_simple(1, dims, nullptr), H5Sclose, "space");
-  const hdf5::Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "list");
+  const hdf5::Id space(H5Screate_simple(1, dims, nullptr), "space");
+  const hdf5::Id list(H5Pcreate(H5P_DATASET_CREATE), "list");
   H5Pset_chunk(list, 1, chunk);
-  {
-    const hdf5::Id huge(H5Dcreate2(file, "huge", H5T_IEEE_F64LE, space, H5P_DEFAULT, list, H5P_DEFAULT), H5Dclose,
-                        "array");
-  }
-  EXPECT_NE(io_error([&] { hdf5::read_array<double>(file, "huge"); }).find("out of all reason"), std::string::npos);
+  { const hdf5::Id huge(H5Dcreate2(file, "huge", H5T_IEEE_F64LE, space, H5P_DEFAULT, list, H5P_DEFAULT), "array"); }
+  EXPECT_NE(io_error([&] { hdf5::read_array<double>(file, "huge"); }).find("implausible"), std::string::npos);
 }
 
 }  // namespace

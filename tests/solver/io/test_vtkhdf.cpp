@@ -45,7 +45,7 @@ void expect_equal(const Frame& found, const Frame& wanted) {
 /// Every array of a file by its path, as numbers.
 void collect(hid_t group, const std::string& path, std::map<std::string, std::vector<double>>& all) {
   for (const std::string& name : hdf5::names(group)) {
-    const hdf5::Id object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose, name);
+    const hdf5::Id object(H5Oopen(group, name.c_str(), H5P_DEFAULT), name);
     if (H5Iget_type(object) == H5I_GROUP)
       collect(object, path + "/" + name, all);
     else

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "material/bingham-inl.hpp"
+#include "material/constitutive_models-inl.hpp"
 
 namespace talus {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "material/elastoviscoplastic-inl.hpp"
+#include "material/constitutive_models-inl.hpp"
 
 namespace talus {
 namespace {

@@ -17,10 +17,8 @@ TEST(Vec2, ProductsOfRotatedAndParallelVectors) {
 TEST(Vec2, SumsAndDifferences) {
   Vec2 a{1, 2};
   a += {10, 20};
-  a -= {3, 5};
-  a *= 2;
-  EXPECT_EQ(a, (Vec2{16, 34}));
-  EXPECT_EQ(-a + a, Vec2{});
+  EXPECT_EQ(a, (Vec2{11, 22}));
+  EXPECT_EQ(a - (Vec2{1, 2}), (Vec2{10, 20}));
   EXPECT_EQ((Box{{1, 2}, {4, 8}}.width()), 3);
   EXPECT_EQ((Box{{1, 2}, {4, 8}}.height()), 6);
 }

@@ -16,41 +16,41 @@ TEST(Geometry, AreaOfATriangleInEitherOrientation) {
 }
 
 TEST(Geometry, CoverIsTheSoilAboveAPoint) {
-  EXPECT_DOUBLE_EQ(cover(triangle, {1, 0}), 3.0 - 1 * 0.75);
-  EXPECT_DOUBLE_EQ(cover(triangle, {1, 1}), 3.0 - 1 * 0.75 - 1);
-  EXPECT_DOUBLE_EQ(cover(triangle, {1, 3}), 0.0);
-  EXPECT_DOUBLE_EQ(cover(triangle, {5, 0}), 0.0);
+  EXPECT_DOUBLE_EQ(thickness_above(triangle, {1, 0}), 3.0 - 1 * 0.75);
+  EXPECT_DOUBLE_EQ(thickness_above(triangle, {1, 1}), 3.0 - 1 * 0.75 - 1);
+  EXPECT_DOUBLE_EQ(thickness_above(triangle, {1, 3}), 0.0);
+  EXPECT_DOUBLE_EQ(thickness_above(triangle, {5, 0}), 0.0);
 }
 
 TEST(Geometry, CoverOfAnOutlineCrossedFourTimes) {
   const std::vector<Vec2> fork{{0, 0}, {3, 0}, {3, 5}, {0, 5},
                                {0, 4}, {2, 4}, {2, 1}, {0, 1}};  // a C: two prongs at x = 1
-  EXPECT_DOUBLE_EQ(cover(fork, {1, 0}), 1.0 + 1.0);
-  EXPECT_DOUBLE_EQ(cover(fork, {1, 0.25}), 0.75 + 1.0);
-  EXPECT_DOUBLE_EQ(cover(fork, {1, 2}), 1.0);
+  EXPECT_DOUBLE_EQ(thickness_above(fork, {1, 0}), 1.0 + 1.0);
+  EXPECT_DOUBLE_EQ(thickness_above(fork, {1, 0.25}), 0.75 + 1.0);
+  EXPECT_DOUBLE_EQ(thickness_above(fork, {1, 2}), 1.0);
 }
 
 TEST(Geometry, OverburdenWeighsEachLayerWithItsOwnDensity) {
   const std::vector<SlidePart> layers{{{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, 0}, {{{0, 1}, {2, 1}, {2, 4}, {0, 4}}, 1}};
   const std::vector<Material> materials{{"clay", 1800, 0, 0, 0}, {"gravel", 2300, 0, 0, 0}};
-  EXPECT_DOUBLE_EQ(overburden(layers, materials, {1, 0.25}), 0.75 * 1800 + 3 * 2300.0);
-  EXPECT_DOUBLE_EQ(overburden(layers, materials, {1, 3}), 1 * 2300.0);
+  EXPECT_DOUBLE_EQ(mass_above(layers, materials, {1, 0.25}), 0.75 * 1800 + 3 * 2300.0);
+  EXPECT_DOUBLE_EQ(mass_above(layers, materials, {1, 3}), 1 * 2300.0);
 }
 
 TEST(Geometry, NearestKnowsTheSoilSide) {
   const Polyline line{{{0, 0}, {10, 0}}, false};
-  EXPECT_DOUBLE_EQ(nearest(line, {3, 2}).distance, 2.0);
-  EXPECT_DOUBLE_EQ(nearest(line, {3, -2}).distance, -2.0);
-  EXPECT_EQ(nearest(line, {3, -2}).point, (Vec2{3, 0}));
+  EXPECT_DOUBLE_EQ(project({3, 2}, line).distance, 2.0);
+  EXPECT_DOUBLE_EQ(project({3, -2}, line).distance, -2.0);
+  EXPECT_EQ(project({3, -2}, line).point, (Vec2{3, 0}));
 }
 
 TEST(Geometry, NearestAtCornersOfBothKinds) {
   const Polyline valley{{{0, 2}, {0, 0}, {2, 0}}, false};  // soil inside the corner
-  EXPECT_GT(nearest(valley, {0.1, 0.1}).distance, 0);
-  EXPECT_DOUBLE_EQ(nearest(valley, {-3, -4}).distance, -5.0);
+  EXPECT_GT(project({0.1, 0.1}, valley).distance, 0);
+  EXPECT_DOUBLE_EQ(project({-3, -4}, valley).distance, -5.0);
   const Polyline ridge{{{-2, -2}, {0, 0}, {2, -2}}, false};  // soil above the roof
-  EXPECT_DOUBLE_EQ(nearest(ridge, {0, 1}).distance, 1.0);
-  EXPECT_LT(nearest(ridge, {0, -0.5}).distance, 0);
+  EXPECT_DOUBLE_EQ(project({0, 1}, ridge).distance, 1.0);
+  EXPECT_LT(project({0, -0.5}, ridge).distance, 0);
 }
 
 TEST(Geometry, OffsetOfARightAngleKeepsBothDistances) {
@@ -61,7 +61,7 @@ TEST(Geometry, OffsetOfARightAngleKeepsBothDistances) {
 }
 
 TEST(Geometry, FillTilesARectangleWithCellCentres) {
-  const Terrain ground{{{-1, 0}, {5, 0}}, false, false, false, 0, 0};
+  const std::vector<Polyline> ground{{{{-1, 0}, {5, 0}}, false}};
   const auto points =
       fill_slide(std::vector<SlidePart>{{{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, 0}}, ground, 0.1, Placement::cells);
   ASSERT_EQ(points.size(), 20u * 10u);
@@ -70,7 +70,8 @@ TEST(Geometry, FillTilesARectangleWithCellCentres) {
 }
 
 TEST(Geometry, FillOnNodesIncludesTheEdges) {
-  const Terrain ground{{{-1, 0}, {12, 0}}, false, false, false, 0, 0};
+  const std::vector<Boundary> bed{{.line = {{{-1, 0}, {12, 0}}, false}}};
+  const auto ground = wall_lines(bed, 0.1, Placement::nodes);
   const auto points =
       fill_slide(std::vector<SlidePart>{{{{0, 0}, {10, 0}, {10, 4}, {0, 4}}, 0}}, ground, 0.1, Placement::nodes);
   EXPECT_EQ(points.size(), 101u * 41u);  // [Z20] 3.1
@@ -78,15 +79,27 @@ TEST(Geometry, FillOnNodesIncludesTheEdges) {
 
 TEST(Geometry, FillKeepsHalfASpacingFromASlopingBed) {
   const Terrain slope{{{0, 5}, {10, 0}, {20, 0}}, false, true, false, 9, 0};
+  const std::vector<Polyline> walls{ground_line(slope)};
   const auto points =
-      fill_slide(std::vector<SlidePart>{{{{0, 5}, {10, 0}, {10, 6}, {0, 6}}, 0}}, slope, 0.2, Placement::cells);
-  const Polyline wall = wall_line(slope, 0.2, Placement::cells);
+      fill_slide(std::vector<SlidePart>{{{{0, 5}, {10, 0}, {10, 6}, {0, 6}}, 0}}, walls, 0.2, Placement::cells);
   ASSERT_FALSE(points.empty());
-  for (const SoilPoint& p : points) EXPECT_GE(nearest(wall, p.x).distance, 0.1 - 1e-6);
+  for (const SoilPoint& p : points) EXPECT_GE(signed_distance(p.x, walls), 0.1 - 1e-6);
+}
+
+TEST(Geometry, TheNearestOfSeveralLinesDecides) {
+  // A floor, and a block on it: a ring that is walked clockwise, so that the soil is outside.
+  const std::vector<Polyline> walls{{{{-5, 0}, {5, 0}}, false}, {{{1, 0.5}, {1, 2}, {2, 2}, {2, 0.5}}, true}};
+  EXPECT_DOUBLE_EQ(signed_distance({-3, 0.4}, walls), 0.4);
+  EXPECT_DOUBLE_EQ(signed_distance({0.7, 1}, walls), 1 - 0.7);
+  EXPECT_DOUBLE_EQ(signed_distance({1.1, 1}, walls), 1 - 1.1);
+  EXPECT_DOUBLE_EQ(signed_distance({-3, -0.4}, walls), -0.4);
+  const std::vector<SlidePart> soil{{{{0, 0}, {3, 0}, {3, 3}, {0, 3}}, 0}};
+  for (const SoilPoint& p : fill_slide(soil, walls, 0.25, Placement::cells))
+    EXPECT_GE(signed_distance(p.x, walls), 0.125 - 1e-6);
 }
 
 TEST(Geometry, FillGivesEachLayerItsMaterial) {
-  const Terrain ground{{{-1, 0}, {5, 0}}, false, false, false, 0, 0};
+  const std::vector<Polyline> ground{{{{-1, 0}, {5, 0}}, false}};
   const std::vector<SlidePart> layers{{{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, 0}, {{{0, 1}, {2, 1}, {2, 2}, {0, 2}}, 1}};
   for (const SoilPoint& p : fill_slide(layers, ground, 0.25, Placement::cells))
     EXPECT_EQ(p.material, p.x.y > 1 ? 1 : 0);

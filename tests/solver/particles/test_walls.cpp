@@ -2,14 +2,15 @@
 
 #include <cmath>
 
-#include "particles/walls.hpp"
+#include "particles/geometry.hpp"
 
 namespace talus {
 namespace {
 
 TEST(Walls, FrameOfTheFieldCheckHas1008Particles) {  // [Z20] 3.1: closed frame, 3 layers, interior 10 x 6 m
   const Terrain box{{{0, 0}, {10, 0}, {10, 6}, {0, 6}}, true, false, false, 0, 0};
-  const auto points = fill_walls(wall_line(box, 0.1, Placement::nodes), 0.1, 3);
+  const auto points =
+      fill_walls(wall_lines(std::vector{Boundary{.line = ground_line(box)}}, 0.1, Placement::nodes).front(), 0.1, 3);
   EXPECT_EQ(points.size(), 1008u);
   for (const WallPoint& w : points) {  // on the lattice, outside the box
     EXPECT_NEAR(w.x.x * 10, std::round(w.x.x * 10), 1e-9);
@@ -33,8 +34,8 @@ TEST(Walls, NormalsPointFromEveryParticleToItsFoot) {
   for (const WallPoint& w : fill_walls(line, 0.2, 4)) {
     EXPECT_NEAR(norm(w.n), 1.0, 1e-12);
     EXPECT_GT(w.depth, 0.0);
-    EXPECT_NEAR(norm(w.x + w.depth * w.n - nearest(line, w.x).point), 0.0, 1e-9);
-    EXPECT_LT(nearest(line, w.x).distance, 0.0);
+    EXPECT_NEAR(norm(w.x + w.depth * w.n - project(w.x, line).point), 0.0, 1e-9);
+    EXPECT_LT(project(w.x, line).distance, 0.0);
   }
 }
 

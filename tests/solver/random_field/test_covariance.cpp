@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "math/quadrature.hpp"
-#include "random_field/covariance.hpp"
+#include "random_field/circulant_embedding.hpp"
 
 namespace talus {
 namespace {

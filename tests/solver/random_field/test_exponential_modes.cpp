@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "math/quadrature.hpp"
-#include "random_field/exponential_modes.hpp"
+#include "random_field/modes.hpp"
 
 namespace talus {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "random_field/truncation.hpp"
+#include "random_field/modes.hpp"
 #include "support/error.hpp"
 
 namespace talus {

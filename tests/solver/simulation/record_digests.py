@@ -66,6 +66,12 @@ def rows():
     some = {k: v[:2] for k, v in CHOICES.items() if k != "walls.contact"}
     for keys in combinations(some):
         yield keys | {"numerics.precision": "double", "time.end_s": 0.02}
+    # The mass form of the continuity equation, in both precisions.
+    mass = {"numerics.continuity": "mass"}
+    for keys in combinations({k: CHOICES[k][:2] for k in ("rheology.yield", "numerics.density_filter", "walls.contact")}):
+        yield keys | mass
+    for yield_ in CHOICES["rheology.yield"]:
+        yield mass | {"rheology.yield": yield_, "numerics.precision": "double", "time.end_s": 0.02}
     # The paper's shear rate, no cut-off of tension, other walls, lattice and start.
     for yield_ in CHOICES["rheology.yield"]:
         law = {"rheology.yield": yield_}

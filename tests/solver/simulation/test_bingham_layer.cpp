@@ -21,7 +21,7 @@ double closed_form(double y) { return y > Y ? U : U * (1 - (y - Y) * (y - Y) / (
 /// left alone.
 double profile_error(Yield yield, Integrator integrator, double dx) {
   Model m;
-  m.terrain = {{{-30, 0}, {30, 0}}, false, false, false, 0, 0};
+  set_ground(m, {{{-30, 0}, {30, 0}}, false, false, false, 0, 0});
   m.slide = {
       {{{-3, 0}, {3, 0}, {3, thickness}, {-3, thickness}}, 0}};  // long enough for the middle not to hear of the ends
   m.materials = {{"mud", density, 0, tau_y, eta}};

@@ -58,7 +58,7 @@ TEST(Determinism, ARestoredRunGoesOnWithTheSameBits) {
 TEST(Determinism, ListsOfNeighboursAreRenewedBeforeTheyMissAny) {
   // A restored run rebuilds its lists; if those of the other were due for a rebuild, the bits would differ.
   Model m = collapse(0.05);
-  m.walls.slip = WallSlip::free_slip;
+  m.boundaries.front().slip = WallSlip::free_slip;
   m.materials[0].phi = 0.05;
   m.time.end = 0.6;
   Simulation whole(m, plan_particles(m)), second(m, plan_particles(m));

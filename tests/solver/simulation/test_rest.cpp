@@ -60,19 +60,20 @@ TEST(Rest, HoldsForEveryDensityTreatmentKernelAndIntegrator) {
     const char* name;
     void (*set)(Model&);
   };
-  for (const Option& option : {Option{"shepard", [](Model& m) { m.numerics.density_filter = DensityFilter::shepard; }},
-                               Option{"none", [](Model& m) { m.numerics.density_filter = DensityFilter::none; }},
-                               Option{"wendland",
-                                      [](Model& m) {
-                                        m.numerics.kernel = KernelShape::wendland_c2;
-                                        m.numerics.h_over_dx = 1.5;
-                                        m.walls.layers = 4;
-                                      }},
-                               Option{"leapfrog", [](Model& m) { m.numerics.integrator = Integrator::leapfrog; }},
-                               Option{"mass_form", [](Model& m) { m.numerics.continuity = Continuity::mass; }},
-                               Option{"with_tension", [](Model& m) { m.numerics.tension_cutoff = false; }},
-                               Option{"regularized", [](Model& m) { m.rheology.yield = Yield::regularized; }},
-                               Option{"free_slip", [](Model& m) { m.walls.slip = WallSlip::free_slip; }}}) {
+  for (const Option& option :
+       {Option{"shepard", [](Model& m) { m.numerics.density_filter = DensityFilter::shepard; }},
+        Option{"none", [](Model& m) { m.numerics.density_filter = DensityFilter::none; }},
+        Option{"wendland",
+               [](Model& m) {
+                 m.numerics.kernel = KernelShape::wendland_c2;
+                 m.numerics.h_over_dx = 1.5;
+                 m.walls.layers = 4;
+               }},
+        Option{"leapfrog", [](Model& m) { m.numerics.integrator = Integrator::leapfrog; }},
+        Option{"mass_form", [](Model& m) { m.numerics.continuity = Continuity::mass; }},
+        Option{"with_tension", [](Model& m) { m.numerics.tension_cutoff = false; }},
+        Option{"regularized", [](Model& m) { m.rheology.yield = Yield::regularized; }},
+        Option{"free_slip", [](Model& m) { m.boundaries.front().slip = WallSlip::free_slip; }}}) {
     Model m = column(2.0, 1.0, 0.1);
     option.set(m);
     Simulation simulation(m, plan_particles(m));
@@ -89,8 +90,8 @@ TEST(Rest, StressFreeStartSettlesToTheSameVerticalStress) {
   m.numerics.initial_pressure = InitialPressure::stress_free;
   m.numerics.kernel = KernelShape::cubic_spline;
 
-  m.numerics.h_over_dx = 1.2;          // the default's wider kernel is 9 % off with ten rows
-  m.walls.slip = WallSlip::free_slip;  // rough side walls would carry part of the weight, as in a silo
+  m.numerics.h_over_dx = 1.2;                       // the default's wider kernel is 9 % off with ten rows
+  m.boundaries.front().slip = WallSlip::free_slip;  // rough side walls would carry part of the weight, as in a silo
   m.time.end = 2.0;
   Simulation simulation(m, plan_particles(m));
   EXPECT_EQ(simulation.frame().pressure[0], 0.0);
@@ -132,7 +133,7 @@ TEST(Rest, StopRuleEndsARunThatRests) {
 TEST(Rest, APileBelowItsFrictionAngleStaysAndAWateryOneFlows) {
   const auto travel = [](double phi_deg) {
     Model m = column(2.0, 1.0, 0.1);
-    m.terrain = {{{0, 0}, {6, 0}}, false, true, false, 1.2, 0.0};
+    set_ground(m, {{{0, 0}, {6, 0}}, false, true, false, 1.2, 0.0});
     m.slide = {{{{0, 0}, {3, 0}, {0, 3 * std::tan(15 * degree)}}, 0}};  // face at 15 degrees against the left wall
     m.materials[0].phi = phi_deg * degree;
     m.dx = 0.05;

@@ -38,7 +38,7 @@ TEST(Simulation, BothPrecisionsGoTheSameWay) {
   // Until rounding has grown: past the first re-sort, and past the first departure through the open end.
   for (const auto integrator : {Integrator::rk2, Integrator::leapfrog}) {
     Model m = collapse(0.05);
-    m.terrain.bed = {{0, 0}, {1.1, 0}};
+    set_ground(m, {{{0, 0}, {1.1, 0}}, false, true, false, 1.2, 0});
     m.numerics.integrator = integrator;
     std::vector<Frame> frames;
     for (const auto precision : {Precision::single, Precision::full}) {
@@ -61,6 +61,26 @@ TEST(Simulation, BothPrecisionsGoTheSameWay) {
   }
 }
 
+TEST(Simulation, TheMassFormHasTheSameFrontInBothPrecisions) {
+  Model m = collapse(0.1);
+  m.numerics.continuity = Continuity::mass;
+  const auto front = [&](Precision precision, double perturbation) {
+    m.numerics.precision = precision;
+    const ParticlePlan plan = plan_particles(m);
+    SoilProperties properties = material_properties(m, plan);
+    for (double& tan_phi : properties.tan_phi) tan_phi *= 1.0 + perturbation;
+    Simulation simulation(m, plan, properties);
+    run(simulation, m.time.end);
+    return simulation.result().measures.influence_zone;
+  };
+  const double vectorised = front(Precision::single, 0.0);
+  // What a relative change of tan(phi) by 1e-6 does to the front is the noise floor.
+  const double noise = std::abs(front(Precision::single, 1e-6) - vectorised);
+  EXPECT_GT(noise, 0.0);
+  EXPECT_LT(noise, 1e-4);
+  EXPECT_NEAR(front(Precision::full, 0.0), vectorised, noise);
+}
+
 TEST(Simulation, PaperNormStopsShorter) {  // its soil is sqrt(3) times stronger
   Model m = collapse(0.05);
   m.time.end = 1.5;
@@ -76,8 +96,9 @@ TEST(Simulation, PaperNormStopsShorter) {  // its soil is sqrt(3) times stronger
 TEST(Simulation, WeakerParticlesRunFarther) {
   Model m = collapse(0.05);
   const ParticlePlan plan = plan_particles(m);
-  Simulation strong(m, plan, {std::vector<double>(plan.soil.size(), 0.7)}),
-      weak(m, plan, {std::vector<double>(plan.soil.size(), 0.2)});
+  const std::vector<double> cohesion(plan.soil.size(), 0.0);
+  Simulation strong(m, plan, {std::vector<double>(plan.soil.size(), 0.7), cohesion}),
+      weak(m, plan, {std::vector<double>(plan.soil.size(), 0.2), cohesion});
   run(strong, m.time.end);
   run(weak, m.time.end);
   EXPECT_GT(farthest(weak.soil()), farthest(strong.soil()) + 0.2);
@@ -121,7 +142,7 @@ TEST(Simulation, DivergenceNamesStepTimeAndParticle) {
 
 TEST(Simulation, SoilThatLeavesThroughAnOpenEndIsCountedAndKept) {
   Model m = collapse(0.05);
-  m.terrain.bed = {{0, 0}, {1.2, 0}};
+  set_ground(m, {{{0, 0}, {1.2, 0}}, false, true, false, 1.2, 0});
   m.materials[0].phi = 5 * degree;
   m.time.end = 1.0;
   Simulation simulation(m, plan_particles(m));
@@ -137,13 +158,13 @@ TEST(Simulation, ABlockOnASmootherWallSlidesAtTheWallsFriction) {
   // theta = 30 deg; soil 45 deg would hold, a wall of 15 deg lets the block slide at g (sin - cos tan 15).
   const auto speed_after = [](WallSlip slip, double phi_wall_deg) {
     Model m;
-    m.terrain = {{{-1, 0}, {12, 0}}, false, false, false, 0, 0};
+    set_ground(m, {{{-1, 0}, {12, 0}}, false, false, false, 0, 0});
     m.slide = {{{{0, 0}, {3, 0}, {3, 0.5}, {0, 0.5}}, 0}};
     m.materials = {{"soil", 2000, 45 * degree, 3000, 0}};
     m.g = {9.81 * std::sin(30 * degree), -9.81 * std::cos(30 * degree)};
     m.dx = 0.1;
-    m.walls.slip = slip;
-    m.walls.phi = phi_wall_deg * degree;
+    m.boundaries.front().slip = slip;
+    m.boundaries.front().phi = phi_wall_deg * degree;
     m.time.end = 0.8;
     m.numerics.initial_pressure = InitialPressure::hydrostatic;
     if (slip == WallSlip::friction) m.materials[0].c = 0;
@@ -161,12 +182,37 @@ TEST(Simulation, ABlockOnASmootherWallSlidesAtTheWallsFriction) {
   EXPECT_LT(speed_after(WallSlip::no_slip, 0), 0.05);
 }
 
+TEST(Simulation, BlocksOnTwoBoundariesSlideEachAtTheFrictionOfItsOwn) {
+  Model m;
+  m.terrain.bed = {{-1, 0}, {12, 0}};
+  m.boundaries = {{.name = "rock", .line = {{{-1, 0}, {5, 0}}}, .slip = WallSlip::friction, .phi = 15 * degree},
+                  {.name = "ice", .line = {{{5, 0}, {12, 0}}}, .slip = WallSlip::free_slip}};
+  m.slide = {{{{0, 0}, {3, 0}, {3, 0.5}, {0, 0.5}}, 0}, {{{6, 0}, {8, 0}, {8, 0.5}, {6, 0.5}}, 1}};
+  m.materials = {{"sand", 2000, 45 * degree, 0, 0}, {"clay", 2000, 45 * degree, 3000, 0}};
+  m.g = {9.81 * std::sin(30 * degree), -9.81 * std::cos(30 * degree)};
+  m.time.end = 0.6;
+  for (const auto precision : {Precision::single, Precision::full}) {
+    m.numerics.precision = precision;
+    Simulation simulation(m, plan_particles(m));
+    run(simulation, m.time.end);
+    const Soil& soil = simulation.soil();
+    double momentum[2] = {0, 0}, mass[2] = {0, 0};
+    for (std::size_t i = 0; i < soil.size(); ++i) {
+      momentum[soil.material[i]] += soil.m[i] * soil.vx[i];
+      mass[soil.material[i]] += soil.m[i];
+    }
+    const double free_fall = 9.81 * std::sin(30 * degree) * m.time.end;
+    const double braked = free_fall - 9.81 * std::cos(30 * degree) * std::tan(15 * degree) * m.time.end;
+    EXPECT_NEAR(momentum[0] / mass[0], braked, 0.1 * braked);
+    EXPECT_NEAR(momentum[1] / mass[1], free_fall, 0.01 * free_fall);
+  }
+}
+
 TEST(Simulation, WholeRightHandSideIsOfSecondOrderInTime) {
   // Smooth as far as SPH goes: no walls near, no switches (tension kept, no artificial viscosity), strong elastic soil.
   const auto position_after = [](double dt) {
     Model m = collapse(0.1);
-    m.terrain.bed = {{-10, -10}, {10, -10}};
-    m.terrain.left_wall = false;
+    set_ground(m, {{{-10, -10}, {10, -10}}, false, false, false, 0, 0});
     m.g = {0, 0};
     m.materials = {{"soil", 2000, 0, 1e9, 0}};
     m.numerics.alpha = 0;

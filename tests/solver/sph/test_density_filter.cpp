@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "random_soil.hpp"
-#include "sph/density_diffusion-inl.hpp"
+#include "sph/continuity-inl.hpp"
 
 namespace talus {
 namespace {
@@ -60,10 +60,10 @@ TEST(ShepardFilter, KeepsAUniformDensityAndSmoothsARandomOne) {
     return std::sqrt(sum2 / n - sum * sum / (n * n));
   };
   const double before = spread();
-  RightHandSide(k).filter_density(soil, none, cells, no_cells);
+  filter_density(k, soil, none, {cells, no_cells});
   EXPECT_LT(spread(), 0.6 * before);
   soil.rho.assign(soil.size(), 2050.0);
-  RightHandSide(k).filter_density(soil, none, cells, no_cells);
+  filter_density(k, soil, none, {cells, no_cells});
   for (const double r : soil.rho) ASSERT_NEAR(r, 2050.0, 1e-9);
 }
 
@@ -75,7 +75,7 @@ TEST(ShepardFilter, DoesNotMixTheDensitiesOfTwoLayers) {
   Soil soil = random_soil(12, 12, 0.1, 47, 2);
   const CellList cells = sorted(soil, 2 * k.h);
   for (std::size_t i = 0; i < soil.size(); ++i) soil.rho[i] = soil.material[i] == 0 ? 2000 * 1.01 : 1500 * 1.01;
-  RightHandSide(k).filter_density(soil, none, cells, no_cells);
+  filter_density(k, soil, none, {cells, no_cells});
   for (std::size_t i = 0; i < soil.size(); ++i)
     ASSERT_NEAR(soil.rho[i], soil.material[i] == 0 ? 2000 * 1.01 : 1500 * 1.01, 1e-9);
 }

@@ -16,7 +16,7 @@ using namespace testing_support;
 
 struct Rates {
   std::vector<double> ax, ay, drho, dtxx, dtyy, dtxy, p, sxx, syy, sxy, gamma_dot;
-  std::vector<double> wall_p, wall_sxx, wall_syy, wall_sxy, wall_compression;
+  std::vector<double> wall_p, wall_sxx, wall_syy, wall_sxy, wall_density_ratio;
 };
 
 /// Every rate straight from the equations, for every option of the kernel, the constitutive law and the walls.
@@ -25,7 +25,7 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
   Rates r;
   for (auto* a : {&r.ax, &r.ay, &r.drho, &r.dtxx, &r.dtyy, &r.dtxy, &r.p, &r.sxx, &r.syy, &r.sxy, &r.gamma_dot})
     a->assign(n, 0.0);
-  for (auto* a : {&r.wall_p, &r.wall_sxx, &r.wall_syy, &r.wall_sxy, &r.wall_compression}) a->assign(nw, 0.0);
+  for (auto* a : {&r.wall_p, &r.wall_sxx, &r.wall_syy, &r.wall_sxy, &r.wall_density_ratio}) a->assign(nw, 0.0);
   const double sigma = 15 / (7 * std::numbers::pi * k.h * k.h);
   const bool wendland = k.numerics.kernel == KernelShape::wendland_c2;
   const double sigma_c2 = 7 / (4 * std::numbers::pi * k.h * k.h);
@@ -39,6 +39,7 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     if (wendland) return q < 2 ? -5 * sigma_c2 / k.h * q * std::pow(1 - q / 2, 3) : 0.0;
     return q < 1 ? sigma / k.h * (-2 * q + 1.5 * q * q) : q < 2 ? -sigma / k.h * 0.5 * (2 - q) * (2 - q) : 0.0;
   };
+  const auto slip = [&](std::size_t j) { return k.boundaries[static_cast<std::size_t>(w.boundary[j])].slip; };
   struct WallPair {
     double distance;  ///< of the soil particle to the wall line
     double vx, vy;    ///< v_i minus the virtual velocity of the wall particle
@@ -49,7 +50,7 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     const double d_i = x * w.nx[j] + y * w.ny[j] - w.depth[j];
     const double b = std::min(k.walls.b_max, 1 + w.depth[j] / std::max(d_i, 1e-6 * w.depth[j]));
     double vx = b * s.vx[i], vy = b * s.vy[i];
-    if (k.walls.slip == WallSlip::free_slip) {
+    if (slip(j) == WallSlip::free_slip) {
       const double v_n = s.vx[i] * w.nx[j] + s.vy[i] * w.ny[j];
       vx = b * v_n * w.nx[j];
       vy = b * v_n * w.ny[j];
@@ -74,12 +75,13 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
         diffusion += V * (s.rho[j] - s.rho[i] - hydrostatic) * (-x * gx - y * gy) / (d * d);
       }
     }
-    double wall_distance = 1e300;
+    double tan_phi = s.tan_phi[i];
     for (std::size_t j = 0; j < nw; ++j) {
       const double x = s.x[i] - w.x[j], y = s.y[i] - w.y[j], d = std::hypot(x, y);
       const WallPair pair = wall_pair(i, j);
       if (!pair.acts) continue;
-      wall_distance = std::min(wall_distance, pair.distance);
+      if (slip(j) == WallSlip::friction && pair.distance < 1.1 * k.h)
+        tan_phi = std::min(tan_phi, k.boundaries[static_cast<std::size_t>(w.boundary[j])].tan_phi);
       const double gx = dW(d) * x / d, gy = dW(d) * y / d;
       Lxx -= w.volume * pair.vx * gx;
       Lxy -= w.volume * pair.vx * gy;
@@ -96,10 +98,7 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     const double norm2_e = exx * exx + eyy * eyy + ezz * ezz + 2 * exy * exy;
     const bool printed = k.rheology.shear_rate == ShearRate::paper;
     r.gamma_dot[i] = std::sqrt((printed ? 2.0 / 3 : 2.0) * norm2_e);
-    double tan_phi = s.tan_phi[i];
-    if (k.walls.slip == WallSlip::friction && wall_distance < 1.1 * k.h)
-      tan_phi = std::min(tan_phi, std::tan(k.walls.phi));
-    const double tau_y = law.c + std::max(p, 0.0) * tan_phi;
+    const double tau_y = s.c[i] + std::max(p, 0.0) * tan_phi;
     r.p[i] = p;
     if (k.rheology.yield == Yield::regularized) {
       const double eta = law.eta + tau_y / std::max(r.gamma_dot[i], 1e-3);
@@ -140,11 +139,11 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     }
     if (sum == 0) continue;
     r.wall_p[q] = k.numerics.tension_cutoff ? std::max(p / sum, 0.0) : p / sum;
-    r.wall_compression[q] = compression / sum;
+    r.wall_density_ratio[q] = compression / sum;
     double growth = 1;
-    if (k.walls.slip == WallSlip::no_slip && p_soil > 0) growth = std::clamp(r.wall_p[q] * sum / p_soil, 0.0, 3.0);
+    if (slip(q) == WallSlip::no_slip && p_soil > 0) growth = std::clamp(r.wall_p[q] * sum / p_soil, 0.0, 3.0);
     double sxx = txx * growth / sum - r.wall_p[q], syy = tyy * growth / sum - r.wall_p[q], sxy = txy * growth / sum;
-    if (k.walls.slip == WallSlip::free_slip) {  // in the axes of the normal and the tangent (-ny, nx), shear reversed
+    if (slip(q) == WallSlip::free_slip) {  // in the axes of the normal and the tangent (-ny, nx), shear reversed
       const double c = w.nx[q], z = w.ny[q];
       const double nn = c * c * sxx + z * z * syy + 2 * c * z * sxy, tt = z * z * sxx + c * c * syy - 2 * c * z * sxy;
       const double nt = -(-c * z * sxx + c * z * syy + (c * c - z * z) * sxy);
@@ -185,6 +184,8 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
   return r;
 }
 
+constexpr WallFriction rough, smoother{WallSlip::friction, 0.1}, frictionless{WallSlip::free_slip};
+
 struct Option {
   const char* name;
   void (*set)(FlowConstants&);
@@ -203,6 +204,7 @@ void compare_with_oracle(const Option& option, Precision precision, double toler
   for (std::size_t w = 0; w < walls.size(); ++w) {
     walls.nx[w] = -0.28;
     walls.ny[w] = 0.96;  // so that x and y differ
+    walls.boundary[w] = static_cast<std::int32_t>(w % k.boundaries.size());
   }
   const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
   const Rates expected = brute_force(k, soil, walls);
@@ -217,9 +219,11 @@ void compare_with_oracle(const Option& option, Precision precision, double toler
   expect_close(soil.dtyy, expected.dtyy, tolerance, "dtyy");
   expect_close(soil.dtxy, expected.dtxy, tolerance, "dtxy");
   expect_close(walls.p, expected.wall_p, tolerance, "wall p");
-  expect_close(walls.compression, expected.wall_compression, tolerance, "wall compression");
+  expect_close(walls.density_ratio, expected.wall_density_ratio, tolerance, "wall density ratio");
   // A smooth wall turns pressure into shear, so that its shear carries the rounding of the pressure.
-  const double turned = k.walls.slip == WallSlip::free_slip ? 10 * tolerance : tolerance;
+  const bool smooth =
+      std::ranges::any_of(k.boundaries, [](const WallFriction& b) { return b.slip == WallSlip::free_slip; });
+  const double turned = smooth ? 10 * tolerance : tolerance;
   expect_close(walls.sxx, expected.wall_sxx, turned, "wall sxx");
   expect_close(walls.syy, expected.wall_syy, turned, "wall syy");
   expect_close(walls.sxy, expected.wall_sxy, turned, "wall sxy");
@@ -252,23 +256,28 @@ INSTANTIATE_TEST_SUITE_P(
                              k.walls.contact = WallContact::approaching;
                              k.numerics.density_filter = DensityFilter::shepard;
                            }},
-                    Option{"friction",
-                           [](FlowConstants& k) {
-                             k.walls.slip = WallSlip::friction;
-                             k.walls.phi = 0.1;
-                           }},
+                    Option{"friction", [](FlowConstants& k) { k.boundaries = {smoother}; }},
                     Option{"friction_where_approaching",
                            [](FlowConstants& k) {
-                             k.walls.slip = WallSlip::friction;
-                             k.walls.phi = 0.1;
+                             k.boundaries = {smoother};
                              k.walls.contact = WallContact::approaching;
                              k.rheology.yield = Yield::regularized;
                            }},
-                    Option{"free_slip", [](FlowConstants& k) { k.walls.slip = WallSlip::free_slip; }},
+                    Option{"free_slip", [](FlowConstants& k) { k.boundaries = {frictionless}; }},
                     Option{"free_slip_where_approaching",
                            [](FlowConstants& k) {
-                             k.walls.slip = WallSlip::free_slip;
+                             k.boundaries = {frictionless};
                              k.walls.contact = WallContact::approaching;
+                           }},
+                    Option{"walls_of_three_boundaries",
+                           [](FlowConstants& k) {
+                             k.boundaries = {frictionless, smoother, rough, {WallSlip::friction, 0.3}};
+                           }},
+                    Option{"regularized_between_two_boundaries",
+                           [](FlowConstants& k) {
+                             k.boundaries = {frictionless, smoother};
+                             k.walls.contact = WallContact::approaching;
+                             k.rheology.yield = Yield::regularized;
                            }},
                     Option{"tension", [](FlowConstants& k) { k.numerics.tension_cutoff = false; }},
                     Option{"no_diffusion", [](FlowConstants& k) { k.numerics.density_filter = DensityFilter::none; }}),

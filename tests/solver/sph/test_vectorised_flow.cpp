@@ -45,7 +45,7 @@ TEST(VectorisedFlow, ListsReachAsFarAsParticlesMayHaveGone) {
   flow.state_changed();
   Soil plain = soil;
   WallParticles plain_walls = walls;
-  RightHandSide(k).evaluate(plain, plain_walls, soil_cells, wall_cells);
+  evaluate_plain(k, plain, plain_walls, {soil_cells, wall_cells});
   flow.evaluate(soil, walls, 0.0, true);
   flow.read_evaluation(soil, soil);
   expect_close(soil.drho, plain.drho, 2e-6, "drho");
@@ -58,9 +58,8 @@ TEST(VectorisedFlow, EqualsThePlainLoopsAtWallsOfEveryKind) {
     for (const auto contact : {WallContact::always, WallContact::approaching})
       for (const auto kernel : {KernelShape::cubic_spline, KernelShape::wendland_c2}) {
         FlowConstants k = constants(0.1, {1.3, -9.81}, {{"a", 2000, 0.5, 700, 30}, {"b", 1900, 0.5, 100, 90}});
-        k.walls.slip = slip;
+        k.boundaries = {{slip, slip == WallSlip::friction ? 0.1 : 1e9}};
         k.walls.contact = contact;
-        k.walls.phi = 0.1;
         k.numerics.kernel = kernel;
         Soil soil = random_soil(30, 8, k.dx, 47, 2);
         WallParticles walls = flat_walls(30, k.dx);
@@ -71,7 +70,7 @@ TEST(VectorisedFlow, EqualsThePlainLoopsAtWallsOfEveryKind) {
         const CellList soil_cells = sorted(soil, 2 * k.h), wall_cells = sorted(walls, 2 * k.h);
         Soil plain = soil;
         WallParticles plain_walls = walls;
-        RightHandSide(k).evaluate(plain, plain_walls, soil_cells, wall_cells);
+        evaluate_plain(k, plain, plain_walls, {soil_cells, wall_cells});
         k.numerics.precision = Precision::single;
         evaluate(k, soil, walls, soil_cells, wall_cells);
         for_each_rate(plain, [&](const std::string& name, const auto& expected) {

@@ -46,7 +46,7 @@ TEST(Wall, ExtrapolationIsExactForHydrostaticPressure) {
     sum.add(1.0 / (1.0 + dot(x, x)), {{-p, -p, 0}, p, 2000, 0}, dot(g, wall - x), 1.0 / (50 * 50));
   }
   EXPECT_NEAR(sum.p / sum.weight, 5000 + 2000 * 9.81 * 0.05, 1e-9);
-  EXPECT_NEAR(sum.value(FlowConstants{}, {0, 1}).p, 5000 + 2000 * 9.81 * 0.05, 1e-9);
+  EXPECT_NEAR(sum.value(true, {0, 1}, true, false).p, 5000 + 2000 * 9.81 * 0.05, 1e-9);
 }
 
 TEST(Wall, DeviatorGrowsWithThePressureUpToThreefold) {
@@ -60,8 +60,7 @@ TEST(Wall, DeviatorGrowsWithThePressureUpToThreefold) {
 Soil sliding(WallSlip slip, double phi_wall) {
   const double dx = 0.1;
   FlowConstants k = constants(dx, {0, 0}, {{"a", 2000, 0.5, 0, 0}});
-  k.walls.slip = slip;
-  k.walls.phi = phi_wall;
+  k.boundaries = wall_friction(std::vector{Boundary{"bed", {}, slip, phi_wall}});
   k.rheology.yield = Yield::regularized;
   k.numerics.density_filter = DensityFilter::none;
   k.numerics.alpha = 0;
@@ -73,6 +72,7 @@ Soil sliding(WallSlip slip, double phi_wall) {
     soil.vy[i] = 0;
     soil.m[i] = 2000 * dx * dx;
     soil.tan_phi[i] = 0.5;
+    soil.c[i] = 0;
     soil.rho[i] = k.soils[0].eos.density(1e4);
   }
   WallParticles walls = flat_walls(20, dx);

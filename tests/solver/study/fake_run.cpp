@@ -4,7 +4,8 @@
 //   [--perturbation E] [--resume]
 //
 // DIARY is a file that gets the lines "begin NAME fresh|resumed" and "end NAME". SCRIPT says what realizations do
-// otherwise than end well: "3=diverge,5=kill-once". With `orphan` in SCRIPT it outlives its parent.
+// otherwise than end well: "3=diverge,5=kill-once". "8=after-40" waits until 40 runs have ended. With `orphan` in
+// SCRIPT it outlives its parent.
 
 #include <fcntl.h>
 #include <signal.h>
@@ -92,9 +93,9 @@ int main(int argc, char** argv) {
   append(diary, "begin " + name + (resumed ? " resumed\n" : " fresh\n"));
   fs::create_directories(out);
   const std::string what = behaviour[name];
-  const auto until =
-      std::chrono::steady_clock::now() + std::chrono::milliseconds(std::stoi(words[1]) * (what == "slow" ? 50 : 1));
-  while (!asked_to_stop && std::chrono::steady_clock::now() < until)
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(std::stoi(words[1]));
+  const int ends = what.starts_with("after-") ? std::stoi(what.substr(6)) : 0;
+  while (!asked_to_stop && (std::chrono::steady_clock::now() < until || (ends > 0 && count(diary, "end ") < ends)))
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (asked_to_stop) {
     talus::fixtures::write(out / "checkpoint.h5", "state");

@@ -1,3 +1,6 @@
+#include <cmath>
+#include <limits>
+
 #include "studies.hpp"
 #include "study/publish.hpp"
 #include "support/error.hpp"
@@ -64,6 +67,17 @@ TEST(Csv, ReadsBackExactly) {
   EXPECT_EQ(back[1].reason, "a, \"b\"; c");
   EXPECT_EQ(back[2].index, 1000000);
   EXPECT_EQ(table_of(back), content(path));
+}
+
+TEST(Csv, AMeasureWithoutAValueIsAnEmptyCell) {  // of a run that was recorded before the measure existed
+  const TemporaryDirectory directory;
+  Record r = done(3, 34.5);
+  r.measures.front_mass_999 = std::numeric_limits<double>::quiet_NaN();
+  write(directory / "t.csv", table_of({r}));
+  EXPECT_EQ(content(directory / "t.csv").find("nan"), std::string::npos);
+  const std::vector<Record> back = read_csv(directory / "t.csv", "index");
+  EXPECT_TRUE(std::isnan(back.at(0).measures.front_mass_999));
+  EXPECT_EQ(back[0].measures.centre_of_mass_x, r.measures.centre_of_mass_x);
 }
 
 TEST(Csv, AcceptsLineEndsOfOtherSystems) {

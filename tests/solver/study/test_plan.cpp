@@ -1,6 +1,6 @@
 #include <cstdint>
 
-#include "case/study_plan.hpp"
+#include "case/load.hpp"
 #include "studies.hpp"
 #include "study/plan.hpp"
 #include "support/error.hpp"

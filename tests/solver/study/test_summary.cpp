@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "schema_check.hpp"
 #include "statistics/histogram.hpp"
 #include "studies.hpp"
@@ -49,6 +51,15 @@ TEST(Summary, CountsWhatWasPlannedMadeAndMissed) {
   const auto all = summarize(plan(2), {done(0, 1.0), failed(1, "x")}, {})["realizations"];
   EXPECT_EQ(all["complete"], true);
   EXPECT_EQ(all["missing"].dump(), "[]");
+}
+
+TEST(Summary, AMeasureWithoutAValueDoesNotCount) {  // a run that was recorded before the measure existed
+  std::vector<Record> runs = some_runs();
+  runs[1].measures.front_mass_999 = std::numeric_limits<double>::quiet_NaN();
+  const auto study = summarize(plan(8), runs, {});
+  EXPECT_EQ(study["quantities"]["front_mass_999_m"]["n"], 4);
+  EXPECT_EQ(study["quantities"]["influence_zone_m"]["n"], 5);
+  EXPECT_EQ(against_schema(study), "");
 }
 
 TEST(Summary, StatisticsOfEachMeasureAreThoseOfItsColumn) {
