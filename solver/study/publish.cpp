@@ -29,16 +29,6 @@ std::string csv_header(const std::string& index_name) {
   return line + ",digest,reason\n";
 }
 
-std::string csv_line(const Record& record) {
-  std::string line = std::to_string(record.index) + (record.done ? ",done" : ",failed");
-  if (!record.done) return line + std::string(numbers + 2, ',') + csv_quoted(record.reason) + '\n';
-  visit_numbers(record, [&](const char*, const char*, auto value) {
-    line += ',';
-    if (!std::isnan(static_cast<double>(value))) line += to_text(value);
-  });
-  return line + ',' + record.digest + ",\n";
-}
-
 /// Reads the number of a field. @param fail  called with what is wrong with it
 template <class Number, class Fail>
 void read_number(const std::string& field, Number& value, const Fail& fail) {
@@ -106,6 +96,16 @@ void compare(const Plan& a, const Plan& b, const fs::path& first, const fs::path
 }
 
 }  // namespace
+
+std::string csv_line(const Record& record) {
+  std::string line = std::to_string(record.index) + (record.done ? ",done" : ",failed");
+  if (!record.done) return line + std::string(numbers + 2, ',') + csv_quoted(record.reason) + '\n';
+  visit_numbers(record, [&](const char*, const char*, auto value) {
+    line += ',';
+    if (!std::isnan(static_cast<double>(value))) line += to_text(value);
+  });
+  return line + ',' + record.digest + ",\n";
+}
 
 std::vector<Record> read_csv(const fs::path& path, const std::string& index_name) {
   const std::string text = read_file(path, max_csv_bytes);

@@ -18,6 +18,9 @@ namespace talus {
 /// or twice
 std::vector<Record> read_csv(const std::filesystem::path& path, const std::string& index_name);
 
+/// The line of a record in these tables.
+std::string csv_line(const Record& record);
+
 /// Takes a record.
 using RecordSink = std::function<void(const Record&)>;
 /// Gives the records of one kind to a sink, in order of index.
