@@ -42,7 +42,7 @@ void set_footer(CLI::App& verb, std::initializer_list<std::string_view> codes,
 void add_case(CLI::App& verb, std::filesystem::path& file);
 void add_overrides(CLI::App& verb, std::vector<std::string>& overrides);
 
-/// Accepts a file name that ends in one of `known`: {".json", ".svg"}.
+/// Accepts a file name that ends in one of `known`, such as .svg.
 CLI::Validator has_ending(std::vector<std::string> known);
 
 /// "warning: /material/density_kg_m3 19.4 kg/m3 is unusual ..." on stderr, a line each.
