@@ -17,6 +17,11 @@ _talus_words_of_key() {
   "$1" schema --keys 2>/dev/null | awk -F '\t' -v key="$2" '$1 == key { print $3 }'
 }
 
+# Job IDs of the server, newest first; nothing where none answers.
+_talus_jobs() {
+  "$1" status 2>/dev/null | cut -d ' ' -f 1
+}
+
 # Case files here, and the installed ones whose name begins like the word.
 _talus_cases() {
   compgen -f -X '!*.json' -- "$1"
@@ -76,6 +81,7 @@ _talus() {
       talus: | talus:help) wanted=$(_talus_verbs "$program") ;;
       talus:schema) wanted=$("$program" schema) ;;
       talus:stats | talus:plot | talus:profile) wanted=directory ;;
+      talus:status | talus:watch | talus:results | talus:cancel) wanted=$(_talus_jobs "$program") ;;
       talus:validate | talus:run | talus:field | talus:study | talus:submit | talus:bench) wanted=case ;;
       *) wanted="" ;;
     esac

@@ -46,7 +46,9 @@ FileDescriptor wait_for_lock(const std::filesystem::path& path, bool inherited, 
                              const std::string& otherwise) {
   const auto end = std::chrono::steady_clock::now() + patience;
   for (;;) {
-    if (FileDescriptor lock = try_lock(path, inherited)) return lock;
+    TriedLock lock = try_lock(path, inherited);
+    if (!lock.supported) throw IoError(path.string() + ": the file system has no locks; choose another --data");
+    if (lock.file) return std::move(lock.file);
     if (std::chrono::steady_clock::now() > end) throw IoError(otherwise);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }

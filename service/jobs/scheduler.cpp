@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/json.hpp"
-#include "executor/local.hpp"
 #include "executor/slurm.hpp"
 #include "study/estimator.hpp"
 #include "support/files.hpp"
@@ -30,7 +29,7 @@ bool removed(const fs::path& directory) {
 }
 
 std::unique_ptr<executor::Executor> make_executor(const Config& config) {
-  if (!config.slurm) return std::make_unique<executor::LocalExecutor>(config.workers);
+  if (!config.slurm) return executor::make_local_executor(config.workers);
   const auto note = [](const std::string& text) { log_info("slurm", {{"said", text}}); };
   return std::make_unique<executor::SlurmExecutor>(*config.slurm, DataDirectory{config.data}.slurm(),
                                                    std::vector{config.program.string(), std::string("array-task")},

@@ -14,14 +14,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_out_bytes = std::size_t{64} << 20;
 
-executor::Process started(const executor::Command& command, const fs::path& out, const fs::path& err) try {
-  return executor::Process(command, out, err);
-} catch (const executor::ProcessError& e) {
-  IoError thrown(e.what());
-  thrown.error = e.error;
-  throw thrown;
-}
-
 }  // namespace
 
 TemporaryDirectory::TemporaryDirectory(fs::path path) : path_(std::move(path)) {
@@ -44,7 +36,7 @@ CommandOutput run_to_end(const executor::Command& command, const fs::path& scrat
                          const std::function<bool()>& give_up) {
   const TemporaryDirectory files(scratch / ("command-" + random_hex(8)));
   CommandOutput output;
-  executor::Process child = started(command, files / "out", files / "err");
+  executor::Process child(command, files / "out", files / "err");
   const auto deadline = std::chrono::steady_clock::now() + limit;
   std::chrono::milliseconds nap{1};
   for (std::optional<executor::ProcessEnd> end; !(end = child.poll()); std::this_thread::sleep_for(nap)) {

@@ -112,13 +112,12 @@ std::vector<Job> select_jobs(SQLite::Database& db, const std::string& condition,
 /// Gives each run for which `condition` holds to `take`; one is held at a time.
 template <class Take, class... Values>
 void visit_runs(SQLite::Database& db, Take take, const std::string& condition, const Values&... values) {
-  std::string measures;
-  for (const Measure& measure : measure_table) measures += measure.key + std::string(", ");
+  std::string numbers;
+  const Record any;
+  visit_numbers(any, [&](const char* key, const char*, auto) { numbers += key + std::string(", "); });
   SQLite::Statement query = statement(db,
-                                      "SELECT job, level, kind, idx, state, attempt, crashes, " + measures +
-                                          "mean_friction_angle_deg, captured_variance, steps, wall_clock_s, digest, "
-                                          "reason, exit_code, signal, log_tail FROM runs WHERE " +
-                                          condition,
+                                      "SELECT job, level, kind, idx, state, attempt, crashes, " + numbers +
+                                          "digest, reason, exit_code, signal, log_tail FROM runs WHERE " + condition,
                                       values...);
   while (query.executeStep()) {
     Run run;
@@ -127,9 +126,8 @@ void visit_runs(SQLite::Database& db, Take take, const std::string& condition, c
     Row row(query);
     row >> run.job >> run.key >> run.state >> run.attempt >> run.crashes;
     result.index = run.key.index;
-    for (const Measure& measure : measure_table) row >> result.measures.*measure.member;
-    row >> result.mean_phi_deg >> result.captured_variance >> result.steps >> result.wall_clock >> result.digest >>
-        failure.reason >> failure.exit_code >> failure.signal >> failure.log_tail;
+    visit_numbers(result, [&](const char*, const char*, auto& number) { row >> number; });
+    row >> result.digest >> failure.reason >> failure.exit_code >> failure.signal >> failure.log_tail;
     if (run.state == RunState::done) run.result = std::move(result);
     if (run.state == RunState::failed) run.failure = std::move(failure);
     take(run);

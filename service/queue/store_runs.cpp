@@ -86,16 +86,12 @@ bool Store::is_current(const Claim& claim) {
 
 bool Store::accept(const Claim& claim, const Record& result) {
   return db_.write([&](SQLite::Database& db) {
-    std::string measures;
-    for (const Measure& measure : measure_table) measures += measure.key + std::string(" = ?, ");
-    SQLite::Statement update(db, "UPDATE runs SET state = 'done', " + measures +
-                                     "mean_friction_angle_deg = ?, captured_variance = ?, steps = ?, "
-                                     "wall_clock_s = ?, digest = ? WHERE " +
-                                     is_current_claim);
+    std::string numbers;
+    visit_numbers(result, [&](const char* key, const char*, auto) { numbers += key + std::string(" = ?, "); });
+    SQLite::Statement update(db, "UPDATE runs SET state = 'done', " + numbers + "digest = ? WHERE " + is_current_claim);
     Binder values(update);
-    for (const Measure& measure : measure_table) values << result.measures.*measure.member;
-    values << result.mean_phi_deg << result.captured_variance << result.steps << result.wall_clock << result.digest
-           << claim;
+    visit_numbers(result, [&](const char*, const char*, auto value) { values << value; });
+    values << result.digest << claim;
     if (update.exec() != 1) return false;
     count_ended(db, claim, "done", clock_());
     return true;

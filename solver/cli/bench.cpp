@@ -18,13 +18,11 @@
 #include "cli/help.hpp"
 #include "cli/schemas.hpp"
 #include "cli/verbs.hpp"
-#include "cli/version.hpp"
 #include "simulation/simulation.hpp"
+#include "support/json.hpp"
 
 namespace talus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct BenchOptions {
   std::vector<std::string> overrides;  ///< keys of the case
@@ -209,20 +207,18 @@ Json measure_apart(const BenchOptions& o, const Json& document, const Setting& s
 }
 
 void print_header() {
-  std::printf("%9s %7s %-8s %-11s %-6s %-9s %6s  %9s %9s  %7s   %s\n", "particles", "threads", "steps by", "yield",
-              "prec.", "SIMD", "neigh.", "M eval/s", "M steps/s", "bytes/",
-              "share of time [%]: sort lists gradient walls momentum update");
-  std::printf("%9s %7s %-8s %-11s %-6s %-9s %6s  %9s %9s  %7s\n", "", "", "", "", "", "", "", "per core", "per core",
-              "particle");
+  std::printf("%9s %7s %-8s %-11s %-6s %-9s %6s  %9s %9s  %7s   %s\n%73s %9s  %8s\n", "particles", "threads",
+              "steps by", "yield", "prec.", "SIMD", "neigh.", "M eval/s", "M steps/s", "bytes/",
+              "share of time [%]: sort lists gradient walls momentum update", "per core", "per core", "particle");
 }
 
 void print_row(const Json& r) {
-  std::printf("%9lld %7d %-8s %-11s %-6s %-9s %6.1f  %9.2f %9.2f  %7.0f  ",
-              static_cast<long long>(r["particles"].get<std::int64_t>()), r["threads"].get<int>(),
-              r["integrator"].get<std::string>().c_str(), r["yield"].get<std::string>().c_str(),
-              r["precision"].get<std::string>().c_str(), r["simd"].get<std::string>().c_str(),
-              r["neighbours"].get<double>(), 1e-6 * r["evaluations_per_second_per_core"].get<double>(),
-              1e-6 * r["particle_steps_per_second_per_core"].get<double>(), r["bytes_per_particle"].get<double>());
+  const auto word = [&](const char* key) { return r[key].get_ref<const std::string&>().c_str(); };
+  const auto number = [&](const char* key) { return r[key].get<double>(); };
+  std::printf("%9.0f %7.0f %-8s %-11s %-6s %-9s %6.1f  %9.2f %9.2f  %7.0f  ", number("particles"), number("threads"),
+              word("integrator"), word("yield"), word("precision"), word("simd"), number("neighbours"),
+              1e-6 * number("evaluations_per_second_per_core"), 1e-6 * number("particle_steps_per_second_per_core"),
+              number("bytes_per_particle"));
   for (const auto& share : r["share"]) std::printf(" %.1f", 100.0 * share.get<double>());
   std::printf("\n");
   std::fflush(stdout);
@@ -243,12 +239,12 @@ Exit bench(BenchOptions o) {
   const Json document = load_document(o);
   // Of the default sizes the paper's is the base.
   const double base = std::ranges::count(o.sizes, 17e3) ? 17e3 : o.sizes.front();
-  Json out = {{"version", version()},         {"compiler", TALUS_COMPILER},
+  Json out = {{"version", version},           {"compiler", TALUS_COMPILER},
               {"processor", processor()},     {"cores", std::thread::hardware_concurrency()},
               {"case", document.at("title")}, {"from_s", o.from},
               {"runs", Json::array()}};
   if (!o.json) {
-    std::printf("talus %s, %s, %s with %u cores; case \"%s\" from %g s\n", version().c_str(), TALUS_COMPILER,
+    std::printf("talus %s, %s, %s with %u cores; case \"%s\" from %g s\n", version.c_str(), TALUS_COMPILER,
                 processor().c_str(), std::thread::hardware_concurrency(),
                 document.at("title").get<std::string>().c_str(), o.from);
     print_header();

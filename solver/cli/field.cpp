@@ -5,25 +5,23 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "case/load.hpp"
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
-#include "cli/version.hpp"
 #include "cli/xi_file.hpp"
 #include "figures/profile.hpp"
 #include "io/vtkhdf.hpp"
 #include "math/angle.hpp"
-#include "monte_carlo/realization.hpp"
 #include "random_field/random_field.hpp"
+#include "run/realization.hpp"
+#include "support/json.hpp"
 #include "support/seed.hpp"
 
 namespace talus::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 struct FieldOptions {
   fs::path case_file, xi_file, out;
@@ -33,23 +31,24 @@ struct FieldOptions {
   bool json = false;
 };
 
-// The field on the particles before they move.
+/// The field on the particles before they move.
 struct FieldOnParticles {
-  std::vector<Vec2> position;   // [m]
-  std::vector<double> phi_deg;  // [deg]
-  std::vector<double> tan_phi;  // [-]
+  std::vector<Vec2> position;   ///< [m]
+  std::vector<double> phi_deg;  ///< [deg]
+  Strength strength;
 };
 
-FieldOnParticles field_on(const ParticlePlan& plan, const Strength& strength) {
-  FieldOnParticles field;
-  field.tan_phi = strength.properties.tan_phi;
+FieldOnParticles field_on(const Case& problem, const RunIdentity& identity) {
+  const ParticlePlan plan = plan_particles(problem.model);
+  FieldOnParticles field{
+      .position = {}, .phi_deg = {}, .strength = strength(problem.model, problem.field, problem.study, plan, identity)};
   for (const SoilPoint& point : plan.soil) field.position.push_back(point.x);
-  for (const double tan_phi : strength.properties.tan_phi) field.phi_deg.push_back(friction_angle_deg(tan_phi));
+  for (const double tan_phi : field.strength.properties.tan_phi) field.phi_deg.push_back(friction_angle_deg(tan_phi));
   return field;
 }
 
-// Puts the coefficients of the file in place of drawn ones, and checks their number where the message can name the
-// file.
+/// Puts the coefficients of the file in place of drawn ones, and checks their number where the message can name the
+/// file.
 void use_xi(Case& problem, const fs::path& file) {
   if (!problem.field)
     throw ConfigError("/random_field",
@@ -65,89 +64,68 @@ void use_xi(Case& problem, const fs::path& file) {
   problem.field->xi = xi;
 }
 
-std::uint64_t choose_seed(const FieldOptions& options, const Case& problem) {
-  if (options.seed) return *options.seed;
-  if (problem.study.seed) return *problem.study.seed;
-  return random_seed();
-}
-
-ordered_json summary(const FieldOnParticles& field, const Strength& strength, const RunIdentity& identity) {
+Json summary(const FieldOnParticles& field, const RunIdentity& identity) {
   const auto [lo, hi] = std::minmax_element(field.phi_deg.begin(), field.phi_deg.end());
+  const FieldSummary& of = field.strength.summary;
   return {{"particles", field.position.size()},
-          {"captured_variance", strength.summary.captured_variance},
-          {"terms", strength.summary.terms},
-          {"friction_angle_deg", {{"mean", degrees(strength.summary.mean_phi)}, {"min", *lo}, {"max", *hi}}},
-          {"realization", identity.realization ? ordered_json(*identity.realization) : ordered_json()},
-          {"seed", identity.realization ? ordered_json(identity.seed) : ordered_json()},
-          {"xi", strength.xi}};
+          {"captured_variance", of.captured_variance},
+          {"terms", of.terms},
+          {"friction_angle_deg", {{"mean", degrees(of.mean_phi)}, {"min", *lo}, {"max", *hi}}},
+          {"realization", identity.realization ? Json(*identity.realization) : Json()},
+          {"seed", identity.realization ? Json(identity.seed) : Json()},
+          {"xi", field.strength.xi}};
 }
 
-std::string subtitle(const Strength& strength, const FieldOptions& options) {
+std::string subtitle(const FieldSummary& field, const FieldOptions& options) {
   std::string text = "Friction angle, ";
   text += options.realization       ? "realization " + std::to_string(*options.realization)
           : options.xi_file.empty() ? std::string("median")
                                     : std::string("given coefficients");
-  text += ": mean " + figures::fixed(degrees(strength.summary.mean_phi), 2) + "°";
-  if (strength.summary.terms > 0) {
-    text += "; " + std::to_string(strength.summary.terms) + " terms carry " +
-            figures::fixed(100 * strength.summary.captured_variance, 1) + " % of the variance";
-  }
+  text += ": mean " + figures::fixed(degrees(field.mean_phi), 2) + "°";
+  if (field.terms > 0)
+    text += "; " + std::to_string(field.terms) + " terms carry " + figures::fixed(100 * field.captured_variance, 1) +
+            " % of the variance";
   return text;
 }
 
-void draw(const FieldOnParticles& field, const Model& model, const figures::Stamps& stamps, const fs::path& path) {
+void write(const FieldOnParticles& field, const Model& model, const figures::Stamps& stamps, const fs::path& path) {
+  const std::vector<double>& tan_phi = field.strength.properties.tan_phi;
+  const std::vector<NamedArray> arrays{{"friction_angle_deg", field.phi_deg}, {"tan_phi", tan_phi}};
+  if (path.extension() == ".csv") return write_field_csv(path, field.position, arrays);
+  if (path.extension() == ".vtkhdf") return write_points(path, field.position, arrays);
   Frame frame;
   frame.n_soil = field.position.size();
   frame.position = field.position;
-  frame.tan_phi = field.tan_phi;
+  frame.tan_phi = tan_phi;
   const figures::Snapshot shot{&frame, figures::Colour::friction_angle, "Before the slide"};
   figures::plot_profiles({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
-}
-
-void write(const FieldOnParticles& field, const Model& model, const figures::Stamps& stamps, const fs::path& path) {
-  const std::vector<NamedArray> arrays{{"friction_angle_deg", field.phi_deg}, {"tan_phi", field.tan_phi}};
-  if (path.extension() == ".csv") {
-    write_field_csv(path, field.position, arrays);
-  } else if (path.extension() == ".vtkhdf") {
-    write_points(path, field.position, arrays);
-  } else {
-    draw(field, model, stamps, path);
-  }
 }
 
 Exit field(const FieldOptions& options) {
   LoadedCase loaded = load_case(options.case_file, options.overrides);
   Case& problem = loaded.value;
   if (!options.xi_file.empty()) use_xi(problem, options.xi_file);
-  const RunIdentity identity{choose_seed(options, problem), options.realization};
-  const ParticlePlan plan = plan_particles(problem.model);
-  const Strength soil_strength = strength(problem.model, problem.field, problem.study, plan, identity);
-  const FieldOnParticles on_particles = field_on(plan, soil_strength);
-  std::string source = "Talus " + version();
+  const auto& seed = options.seed ? options.seed : problem.study.seed;
+  const RunIdentity identity{seed ? *seed : random_seed(), options.realization};
+  const FieldOnParticles on_particles = field_on(problem, identity);
+  const FieldSummary& of = on_particles.strength.summary;
+  std::string source = "Talus " + version;
   if (identity.realization) source += "  ·  seed " + std::to_string(identity.seed);
   source += "  ·  case " + loaded.hash;
   if (!options.out.empty())
-    write(on_particles, problem.model, {problem.title, subtitle(soil_strength, options), source}, options.out);
-  const ordered_json numbers = summary(on_particles, soil_strength, identity);
+    write(on_particles, problem.model, {problem.title, subtitle(of, options), source}, options.out);
+  const Json numbers = summary(on_particles, identity);
   if (options.json) {
     std::cout << numbers.dump(2) << "\n";
-  } else {
-    std::cout << options.out.string() << "\n";
-    const ordered_json& phi = numbers["friction_angle_deg"];
-    std::fprintf(
-        stderr, "%zu particles, friction angle %.2f to %.2f deg, mean %.2f; %lld terms carry %.1f %% of the variance\n",
-        on_particles.position.size(), phi["min"].get<double>(), phi["max"].get<double>(), phi["mean"].get<double>(),
-        static_cast<long long>(soil_strength.summary.terms), 100.0 * soil_strength.summary.captured_variance);
+    return Exit::ok;
   }
+  std::cout << options.out.string() << "\n";
+  const Json& phi = numbers["friction_angle_deg"];
+  std::fprintf(stderr,
+               "%zu particles, friction angle %.2f to %.2f deg, mean %.2f; %lld terms carry %.1f %% of the variance\n",
+               on_particles.position.size(), phi["min"].get<double>(), phi["max"].get<double>(),
+               phi["mean"].get<double>(), static_cast<long long>(of.terms), 100.0 * of.captured_variance);
   return Exit::ok;
-}
-
-std::string known_ending(const std::string& path) {
-  const fs::path ending = fs::path(path).extension();
-  for (const char* known : {".csv", ".vtkhdf", ".svg", ".png"}) {
-    if (ending == known) return {};
-  }
-  return path + " must end in .csv, .vtkhdf, .svg or .png";
 }
 
 }  // namespace
@@ -159,7 +137,7 @@ void add_field(CLI::App& app, Action& action) {
   add_case(*verb, options->case_file);
   verb->add_option("--out", options->out, "Output file; the format is taken from the extension; optional with --json")
       ->type_name("FILE")
-      ->check(known_ending);
+      ->check(has_ending({".csv", ".vtkhdf", ".svg", ".png"}));
   auto* realization = verb->add_option("--realization", options->realization,
                                        "Index of the realization, from 0; without it the median field")
                           ->check(CLI::NonNegativeNumber);

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <iostream>
 #include <memory>
 
 #include "support/text.hpp"
@@ -174,6 +175,31 @@ void add_overrides(CLI::App& verb, std::vector<std::string>& overrides) {
       ->type_name("KEY=VALUE")
       ->take_all()
       ->allow_extra_args(false);
+}
+
+CLI::Validator has_ending(std::vector<std::string> known) {
+  return CLI::Validator(
+      [known = std::move(known)](const std::string& path) {
+        std::string list;
+        for (const std::string& ending : known) {
+          if (path.ends_with(ending)) return std::string();
+          list += (list.empty() ? "" : &ending == &known.back() ? " or " : ", ") + ending;
+        }
+        return path + " must end in " + list;
+      },
+      "");
+}
+
+void print_warnings(const std::vector<Fault>& warnings) {
+  for (const Fault& w : warnings) std::cerr << "warning: " << w.pointer << " " << w.message << "\n";
+}
+
+void draw_figures(const std::filesystem::path& directory,
+                  std::vector<std::filesystem::path> (*draw)(const std::filesystem::path&)) try {
+  draw(directory);
+  std::cerr << "figures: " << (directory / "figures").string() << "\n";
+} catch (const IoError& e) {
+  std::cerr << "no figures: " << e.what() << "\n";
 }
 
 std::string usage_message(const CLI::App& app, const std::vector<std::string>& arguments,

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "support/error.hpp"
+
 namespace talus::cli {
 
 /// An option that is spelt otherwise in British English; the spelling works and is not shown.
@@ -39,6 +41,16 @@ void set_footer(CLI::App& verb, std::initializer_list<std::string_view> codes,
 /// The options that several verbs share.
 void add_case(CLI::App& verb, std::filesystem::path& file);
 void add_overrides(CLI::App& verb, std::vector<std::string>& overrides);
+
+/// Accepts a file name that ends in one of `known`, such as .svg.
+CLI::Validator has_ending(std::vector<std::string> known);
+
+/// "warning: /material/density_kg_m3 19.4 kg/m3 is unusual ..." on stderr, a line each.
+void print_warnings(const std::vector<Fault>& warnings);
+
+/// Draws the figures of a run or study that is done; those that cannot be drawn are no reason to fail.
+void draw_figures(const std::filesystem::path& directory,
+                  std::vector<std::filesystem::path> (*draw)(const std::filesystem::path&));
 
 /// Whether a parse ended because help or the version is to be printed, of a command that exists.
 bool asks_for_help(const CLI::App& app, const std::vector<std::string>& arguments, const CLI::ParseError& error);

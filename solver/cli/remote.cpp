@@ -1,29 +1,30 @@
 // talus submit, status, watch, results, cancel: the subcommands that use a talusd.
 
-#include <sys/ioctl.h>
+#include <httplib.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <random>
 
 #include "case/load.hpp"
 #include "cli/help.hpp"
-#include "cli/server.hpp"
-#include "cli/signals.hpp"
+#include "cli/progress.hpp"
 #include "cli/verbs.hpp"
-#include "study/progress.hpp"
 #include "support/files.hpp"
 #include "support/text.hpp"
 
 namespace talus::cli {
 namespace {
 
-using nlohmann::ordered_json;
+constexpr int connect_seconds = 5, read_seconds = 120;
 
 struct RemoteOptions {
-  ServerOptions server;
+  std::string server = "http://127.0.0.1:8080";  ///< URL; --server, else TALUS_SERVER
+  std::string token_file;                        ///< unset: TALUS_TOKEN holds the token itself
   std::string job, case_file, out;
   std::vector<std::string> overrides;
   std::optional<std::int64_t> realizations;
@@ -31,21 +32,86 @@ struct RemoteOptions {
   bool json = false, watch = false;
 };
 
+std::string token(const RemoteOptions& options) {
+  const char* given = std::getenv("TALUS_TOKEN");
+  std::string text = options.token_file.empty() ? (given ? given : "") : read_file(options.token_file, 4096);
+  while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
+  return text;
+}
+
+/// Sent again after a broken connection, a request with the same key makes no second job.
+std::string new_key() {
+  std::random_device entropy;
+  char text[40];
+  std::snprintf(text, sizeof text, "talus-%08x%08x%08x", entropy(), entropy(), entropy());
+  return text;
+}
+
+/// What the server answered, if that is a success.
+/// @throws ConfigError with the server's faults when it refuses what we sent, IoError for everything else
+Json answer_of(const httplib::Result& result, const std::string& url) {
+  if (!result) {
+    const bool absent =
+        result.error() == httplib::Error::Connection || result.error() == httplib::Error::ConnectionTimeout;
+    throw IoError(absent
+                      ? "cannot reach a talusd at " + url +
+                            ": nothing answers there; start one, or give the URL of another one with --server or "
+                            "TALUS_SERVER"
+                      : "the connection to " + url + " broke (" + httplib::to_string(result.error()) + "); try again");
+  }
+  const Json body = Json::parse(result->body, nullptr, false);
+  if (body.is_discarded()) throw IoError(url + " answered, but not as talusd; check the URL");
+  if (result->status < 300) return body;
+  const std::string detail = body.value("detail", "status " + std::to_string(result->status));
+  if (result->status != 400 && result->status != 422) throw IoError("talusd at " + url + ": " + detail);
+  std::vector<Fault> faults;
+  for (const Json& error : body.value("errors", Json::array()))
+    faults.push_back({error.value("pointer", ""), error.value("message", "")});
+  if (faults.empty()) faults.push_back({"", detail});
+  throw ConfigError(faults);
+}
+
+/// Sends a request and waits for its answer. @param body  of a POST
+Json ask(const RemoteOptions& options, const char* method, const std::string& path, const Json& body = {}) {
+  const std::string& url = options.server;
+  httplib::Request request;
+  request.method = method;
+  request.path = path;
+  if (const std::string secret = token(options); !secret.empty())
+    request.headers.emplace("Authorization", "Bearer " + secret);
+  if (!body.is_null()) {
+    request.headers.emplace("Idempotency-Key", new_key());
+    request.headers.emplace("Content-Type", "application/json");
+    request.body = body.dump();
+  }
+  // The library throws at schemes that it does not know.
+  std::optional<httplib::Client> client;
+  if (url.starts_with("http://") || url.starts_with("https://"))
+    client.emplace(url.ends_with('/') ? url.substr(0, url.size() - 1) : url);
+  if (!client || !client->is_valid())
+    throw ConfigError("", "--server " + url + " is not a URL such as http://127.0.0.1:8080");
+  client->set_connection_timeout(connect_seconds);
+  client->set_read_timeout(read_seconds);
+  httplib::Result result = client->send(request);
+  if (!result && !body.is_null()) result = client->send(request);
+  return answer_of(result, url);
+}
+
 std::string path_of(const std::string& job) {
   if (job.empty() || job.find_first_not_of("0123456789abcdef") != std::string::npos)
     throw ConfigError("", "\"" + job + "\" is not a job ID; talus status lists the jobs");
   return "/jobs/" + job;
 }
 
-std::string line_of(const ordered_json& info) {
+std::string line_of(const Json& info) {
   return info.at("jobID").get<std::string>() + "  " + info.at("status").get<std::string>() + "  " +
          std::to_string(info.at("progress").get<int>()) + " %  " + info.at("message").get<std::string>();
 }
 
-Progress progress_of(const ordered_json& info, double elapsed) {
+Progress progress_of(const Json& info, double elapsed) {
   Progress p{.elapsed = elapsed};
   if (!info.contains("realizations")) return p;
-  const ordered_json& runs = info.at("realizations");
+  const Json& runs = info.at("realizations");
   p.planned = runs.at("planned");
   p.done = runs.at("done");
   p.failed = runs.at("failed");
@@ -54,19 +120,14 @@ Progress progress_of(const ordered_json& info, double elapsed) {
   return p;
 }
 
-int terminal_width() {
-  winsize size{};
-  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
-
 /// Shows the progress of a job until it ends: a bar on a terminal, occasional lines elsewhere.
-ordered_json follow(TalusServer& server, const std::string& job) {
+Json follow(const RemoteOptions& options, const std::string& job) {
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   const auto begin = std::chrono::steady_clock::now();
   auto told = begin - std::chrono::minutes(1);
   std::int64_t version = 0;
   for (;;) {
-    const ordered_json info = server.get(path_of(job) + "/events?wait=20&since=" + std::to_string(version));
+    const Json info = ask(options, "GET", path_of(job) + "/events?wait=20&since=" + std::to_string(version));
     version = info.at("version");
     const auto now = std::chrono::steady_clock::now();
     const Progress p = progress_of(info, std::chrono::duration<double>(now - begin).count());
@@ -83,38 +144,35 @@ ordered_json follow(TalusServer& server, const std::string& job) {
   }
 }
 
-Exit exit_of(const ordered_json& info) {
+Exit exit_of(const Json& info) {
   const std::string state = info.at("status");
   if (state == "failed") return Exit::too_many_failed;
   return state == "dismissed" ? Exit::interrupted : Exit::ok;
 }
 
 Exit watch(const RemoteOptions& options) {
-  TalusServer server(options.server);
-  const ordered_json info = follow(server, options.job);
+  const Json info = follow(options, options.job);
   if (options.json) std::cout << info.dump(2) << "\n";
   return exit_of(info);
 }
 
 Exit submit(const RemoteOptions& options) {
   const LoadedCase loaded = load_case(options.case_file, options.overrides);  // files beside the case are put into it
-  for (const Fault& w : loaded.warnings) std::cerr << "warning: " << w.pointer << " " << w.message << "\n";
-  ordered_json inputs = {{"case", loaded.resolved}};
+  print_warnings(loaded.warnings);
+  Json inputs = {{"case", loaded.resolved}};
   if (options.realizations) inputs["realizations"] = *options.realizations;
   if (options.seed) inputs["seed"] = *options.seed;
-  TalusServer server(options.server);
-  const ordered_json info = server.post("/processes/influence-zone/execution", {{"inputs", inputs}});
+  const Json info = ask(options, "POST", "/processes/influence-zone/execution", {{"inputs", inputs}});
   const std::string job = info.at("jobID");
   if (options.json)
     std::cout << info.dump(2) << "\n";
   else
     std::cout << job << std::endl;
-  return options.watch ? exit_of(follow(server, job)) : Exit::ok;
+  return options.watch ? exit_of(follow(options, job)) : Exit::ok;
 }
 
 Exit status(const RemoteOptions& options) {
-  TalusServer server(options.server);
-  const ordered_json answer = server.get(options.job.empty() ? "/jobs" : path_of(options.job));
+  const Json answer = ask(options, "GET", options.job.empty() ? "/jobs" : path_of(options.job));
   if (options.json)
     std::cout << answer.dump(2) << "\n";
   else if (options.job.empty())
@@ -125,20 +183,16 @@ Exit status(const RemoteOptions& options) {
 }
 
 Exit results(const RemoteOptions& options) {
-  TalusServer server(options.server);
-  const ordered_json answer = server.get(path_of(options.job) + "/results");
+  const Json answer = ask(options, "GET", path_of(options.job) + "/results");
   if (!options.out.empty()) write_file_atomically(options.out, answer.dump(2) + "\n");
   if (options.json) std::cout << answer.dump(2) << "\n";
   if (options.json || !options.out.empty() || !answer.contains("summary")) return Exit::ok;
-  const ordered_json& study = answer.at("summary").at("value");
-  std::cout << summary_table(study) << "\ninfluence zone [m]\n"
-            << text_histogram(study.at("quantities").at("influence_zone_m"), 80);
+  std::cout << study_report(answer.at("summary").at("value"));
   return Exit::ok;
 }
 
 Exit cancel(const RemoteOptions& options) {
-  TalusServer server(options.server);
-  const ordered_json info = server.remove(path_of(options.job));
+  const Json info = ask(options, "DELETE", path_of(options.job));
   std::cout << (options.json ? info.dump(2) : line_of(info)) << "\n";
   return Exit::ok;
 }
@@ -148,7 +202,12 @@ CLI::App* add_verb(CLI::App& app, Action& action, const char* name, const char* 
                    const std::shared_ptr<RemoteOptions>& options, Exit (*carry_out)(const RemoteOptions&)) {
   CLI::App* verb = app.add_subcommand(name, help);
   verb->group("Commands for a talusd server");
-  add_server_options(*verb, options->server);
+  verb->add_option("--server", options->server, "URL of the talusd server")
+      ->type_name("URL")
+      ->envname("TALUS_SERVER")
+      ->capture_default_str();
+  verb->add_option("--token-file", options->token_file, "File with the token; default: $TALUS_TOKEN, if set")
+      ->type_name("FILE");
   verb->add_flag("--json", options->json, "Print the server's answer as JSON");
   verb->callback([options, carry_out, &action] { action = [options, carry_out] { return carry_out(*options); }; });
   return verb;
@@ -157,6 +216,7 @@ CLI::App* add_verb(CLI::App& app, Action& action, const char* name, const char* 
 }  // namespace
 
 void add_remote(CLI::App& app, Action& action) {
+  // One for each verb, since TALUS_SERVER is read for all of them, whichever is chosen.
   const auto make = [] { return std::make_shared<RemoteOptions>(); };
   auto options = make();
   CLI::App* verb =

@@ -12,7 +12,6 @@
 #include "cli/help.hpp"
 #include "cli/signals.hpp"
 #include "cli/verbs.hpp"
-#include "cli/version.hpp"
 #include "figures/figures.hpp"
 #include "math/angle.hpp"
 #include "run/run_realization.hpp"
@@ -60,38 +59,25 @@ class ProgressLine {
 };
 
 void print_summary(const RunResult& r, std::uint64_t seed) {
-  std::printf("influence zone        %10.3f m   (farthest particle from the left boundary)\n",
-              r.measures.influence_zone);
-  std::printf("front, connected body %10.3f m\n", r.measures.front_connected);
-  std::printf("front, 99.9 %% of mass %10.3f m\n", r.measures.front_mass_999);
-  std::printf("front, 99 %% of mass   %10.3f m\n", r.measures.front_mass_99);
-  std::printf("centre of mass x      %10.3f m\n", r.measures.centre_of_mass_x);
-  std::printf("time reached          %10.3f s   in %lld steps%s\n", r.time, static_cast<long long>(r.steps),
+  std::printf("x from the left boundary\n");
+  for (const Measure& measure : measure_table)
+    std::printf("%-26s%10.3f %s%s\n", ((measure.front ? "front, " : "") + std::string(measure.label)).c_str(),
+                r.measures.*measure.member, measure.unit,
+                &measure == measure_table.data() ? "   the run-out distance (influence_zone_m)" : "");
+  std::printf("time reached              %10.3f s   in %lld steps%s\n", r.time, static_cast<long long>(r.steps),
               r.at_rest ? ", at rest" : "");
-  std::printf("particles             %10lld soil + %lld wall, %lld penetrated\n", static_cast<long long>(r.soil),
+  std::printf("particles                 %10lld soil + %lld wall, %lld penetrated\n", static_cast<long long>(r.soil),
               static_cast<long long>(r.wall), static_cast<long long>(r.penetrated));
   if (r.left_domain > 0)
-    std::printf("left the terrain      %10lld particles: fronts end where the bed ends\n",
+    std::printf("left the terrain          %10lld particles: fronts end where the bed ends\n",
                 static_cast<long long>(r.left_domain));
   if (r.field.terms > 0)
     std::printf(
-        "random field          %10lld terms, %.1f %% of the variance, mean friction angle %.2f deg, seed %llu\n",
+        "random field              %10lld terms, %.1f %% of the variance, mean friction angle %.2f deg, seed %llu\n",
         static_cast<long long>(r.field.terms), 100.0 * r.field.captured_variance, degrees(r.field.mean_phi),
         static_cast<unsigned long long>(seed));
-  std::printf("wall clock            %10.2f s   on %d thread%s\ndigest                %s\n", r.wall_clock, r.threads,
-              r.threads == 1 ? "" : "s", r.digest.c_str());
-}
-
-void print_warnings(const std::vector<Fault>& warnings) {
-  for (const Fault& w : warnings) std::cerr << "warning: " << w.pointer << " " << w.message << "\n";
-}
-
-/// The run itself is done; figures that cannot be drawn are no reason to fail.
-void draw_figures(const fs::path& directory) try {
-  plot_run(directory);
-  std::cerr << "figures: " << (directory / "figures").string() << "\n";
-} catch (const IoError& e) {
-  std::cerr << "no figures: " << e.what() << "\n";
+  std::printf("wall clock                %10.2f s   on %d thread%s\ndigest                    %s\n", r.wall_clock,
+              r.threads, r.threads == 1 ? "" : "s", r.digest.c_str());
 }
 
 Exit run(const RunOptions& options) {
@@ -113,7 +99,7 @@ Exit run(const RunOptions& options) {
                                               .realization = options.realization,
                                               .perturbation = options.perturbation,
                                               .threads = options.threads,
-                                              .version = version()},
+                                              .version = version},
                                              hooks);
   progress.clear();
   if (!outcome.finished) {
@@ -127,7 +113,7 @@ Exit run(const RunOptions& options) {
   if (outcome.result.penetrated > 0 && !options.study_worker)
     std::cerr << "warning: " << outcome.result.penetrated
               << " particles were deeper than half a spacing in the ground: do not trust this run\n";
-  if (options.figures) draw_figures(options.out);
+  if (options.figures) draw_figures(options.out, plot_run);
   return Exit::ok;
 }
 

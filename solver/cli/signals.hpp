@@ -3,7 +3,7 @@
 namespace talus::cli {
 
 /// From now on SIGINT and SIGTERM only raise a flag, so that the run can checkpoint; a second one ends the process at
-/// once where a person may ask. A worker may get the same request twice: from who started it and from its scheduler.
+/// once if `twice_ends`. A worker may get the same request twice, from its parent and from its scheduler.
 void catch_stop_signals(bool twice_ends = true);
 /// Has one arrived?
 bool stop_requested();

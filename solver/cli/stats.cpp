@@ -7,9 +7,9 @@
 #include <memory>
 
 #include "cli/help.hpp"
+#include "cli/progress.hpp"
 #include "cli/verbs.hpp"
 #include "study/directory_store.hpp"
-#include "study/progress.hpp"
 #include "study/publish.hpp"
 #include "study/summary.hpp"
 #include "support/files.hpp"
@@ -34,28 +34,13 @@ struct StatsOptions {
 Tables tables_from_runs(const fs::path& directory) {
   std::optional<Plan> plan = find_plan(directory);
   if (!plan) throw IoError(directory.string() + " does not hold a study: there is no plan.json");
-  const StudyPaths paths{directory};
-  const StudyIdentity identity{.seed = plan->seed, .case_hash = plan->case_hash};
-  return {.plan = std::move(*plan),
-          .runs = read_records(paths, RunKind::realization, identity),
-          .floor = read_records(paths, RunKind::replicate, identity)};
-}
-
-/// How one quantity is distributed, in the bins asked for.
-Json distribution(const Json& study, const Tables& tables, const StatsOptions& options) {
-  const Measure& measure = *find_measure(options.quantity);
-  MeasureSample sample;
-  sample.failed = study.at("realizations").at("failed");
-  sample.complete = study.at("realizations").at("complete");
-  const auto add = [&](std::vector<double>& values, const Record& r) {
-    if (r.done) values.push_back(r.measures.*measure.member);
+  const auto records = [&](RunKind kind) {
+    std::vector<Record> all;
+    for (auto& [index, record] : read_records({directory}, kind, {.seed = plan->seed, .case_hash = plan->case_hash}))
+      all.push_back(std::move(record));
+    return all;
   };
-  for (const Record& r : tables.runs) add(sample.values, r);
-  if (!tables.floor.empty() && !tables.runs.empty() && tables.runs.front().index == 0)
-    add(sample.noise, tables.runs.front());
-  for (const Record& r : tables.floor) add(sample.noise, r);
-  return talus::distribution(tables.plan, measure, sample,
-                             {.count = static_cast<std::size_t>(options.bins), .edges = options.edges});
+  return {.plan = *plan, .runs = records(RunKind::realization), .floor = records(RunKind::replicate)};
 }
 
 /// What cannot be asked for together; empty if all is well.
@@ -80,35 +65,29 @@ void write_prepared(const StudyPaths& paths, const Tables& tables) {
   write_tables(paths, tables.plan, tables.runs, tables.floor);
 }
 
-void publish(const StatsOptions& options, const Tables& tables, const std::string& study) {
-  const StudyPaths paths{options.directories.front()};
-  if (!options.out.empty())
-    write_merged(options.out, tables, options.directories.front());
-  else if (options.from_runs)
-    write_prepared(paths, tables);
-  else
-    write_file_atomically(paths.summary(), study);
-}
-
 Exit stats(const StatsOptions& options) {
   if (const std::string wrong = misuse(options); !wrong.empty()) {
     std::cerr << wrong << "\n";
     return Exit::usage;
   }
-  Tables tables = options.from_runs ? tables_from_runs(options.directories.front()) : merge(options.directories);
-  tables.runs = counted(tables.plan, tables.runs);
-  const Json study = summarize(tables.plan, tables.runs, tables.floor);
+  const fs::path& first = options.directories.front();
+  const Tables tables = options.from_runs ? tables_from_runs(first) : merge(options.directories);
+  const StudySummary summary = summary_of(tables.plan, tables.runs, tables.floor);
   if (!options.quantity.empty()) {  // a question only: nothing is written
-    std::cout << distribution(study, tables, options).dump(2) << "\n";
+    const Measure& measure = *find_measure(options.quantity);
+    const Bins bins{.count = static_cast<std::size_t>(options.bins), .edges = options.edges};
+    std::cout << distribution(tables.plan, measure, summary.sample(measure), bins).dump(2) << "\n";
     return Exit::ok;
   }
+  const Json study = summary.json();
   const std::string text = study.dump(2) + "\n";
-  publish(options, tables, text);
-  if (options.json)
-    std::cout << text;
+  if (!options.out.empty())
+    write_merged(options.out, tables, first);
+  else if (options.from_runs)
+    write_prepared({first}, tables);
   else
-    std::cout << summary_table(study) << "\ninfluence zone [m]\n"
-              << text_histogram(study.at("quantities").at("influence_zone_m"), 80);
+    write_file_atomically(StudyPaths{first}.summary(), text);
+  std::cout << (options.json ? text : study_report(study));
   return Exit::ok;
 }
 

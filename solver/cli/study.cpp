@@ -1,6 +1,5 @@
 // talus study: many realizations, each a process of its own, and what they say together.
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,12 +13,12 @@
 
 #include "case/load.hpp"
 #include "cli/help.hpp"
+#include "cli/progress.hpp"
 #include "cli/signals.hpp"
 #include "cli/verbs.hpp"
-#include "cli/version.hpp"
 #include "executor/slurm.hpp"
+#include "executor/slurm_batch.hpp"
 #include "figures/figures.hpp"
-#include "study/paths.hpp"
 #include "study/run_study.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
@@ -42,14 +41,9 @@ struct StudyOptions {
   std::vector<std::int64_t> range;  ///< first and last, both included
   int threads = 1;
   std::string executor = "local";
-  fs::path slurm;  ///< configuration of it; empty: all as it comes
+  fs::path slurm;  ///< its configuration; empty: the defaults
   bool json = false, retry_failed = false, no_figures = false, prepare = false;
 };
-
-int terminal_width() {
-  winsize size{};
-  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
-}
 
 /// Progress on stderr: one line that is redrawn on a terminal, a plain line now and then elsewhere.
 class Reporter {
@@ -57,24 +51,22 @@ class Reporter {
   void show(const Progress& progress) {
     if (terminal_)
       std::cerr << "\r" << painted(progress_bar(progress, terminal_width() - 1)) << "\033[K" << std::flush;
-    else if (const auto now = Clock::now(); differs(progress) && now - shown_ >= std::chrono::seconds(10)) {
+    else if (const auto now = Clock::now(); differs(progress) && now - shown_at_ >= std::chrono::seconds(10)) {
       std::cerr << progress_line(progress) << "\n";
-      shown_ = now;
-      made_ = progress.made_now;
-      pending_reason_ = progress.pending_reason;
+      shown_at_ = now;
+      shown_ = progress;
     }
     last_ = progress;
   }
   void note(const std::string& text) { std::cerr << (terminal_ ? "\r\033[K" : "") << text << "\n"; }
   /// Leaves the last state on a line of its own.
-  void finish() {
-    if (last_) note(progress_line(*std::exchange(last_, std::nullopt)));
+  ~Reporter() {
+    if (last_) note(progress_line(*last_));
   }
-  ~Reporter() { finish(); }
 
  private:
   bool differs(const Progress& progress) const {
-    return progress.made_now != made_ || progress.pending_reason != pending_reason_;
+    return progress.made_now != shown_.made_now || progress.pending_reason != shown_.pending_reason;
   }
   /// The bar in green, where colours are wanted (https://no-color.org).
   static std::string painted(const std::string& line) {
@@ -86,9 +78,8 @@ class Reporter {
 
   bool terminal_ = ::isatty(STDERR_FILENO) != 0;
   std::optional<Progress> last_;
-  std::int64_t made_ = 0;  ///< as shown last, and so on
-  std::string pending_reason_;
-  Clock::time_point shown_ = Clock::now();
+  Progress shown_;  ///< the last one that was shown
+  Clock::time_point shown_at_ = Clock::now();
 };
 
 /// --seed, else the case's, else that of the study already begun in --out, else random_seed().
@@ -131,23 +122,9 @@ RunStudyOptions run_options(const StudyOptions& options, const Plan& plan, Repor
   return run;
 }
 
-/// The study itself is done; figures that cannot be drawn are no reason to fail.
-void draw_figures(const fs::path& directory) try {
-  plot_study(directory);
-  std::cerr << "figures: " << StudyPaths{directory}.figures().string() << "\n";
-} catch (const IoError& e) {
-  std::cerr << "no figures: " << e.what() << "\n";
-}
-
 void print(const fs::path& directory, bool json) {
   const std::string text = read_file(StudyPaths{directory}.summary(), max_summary_bytes);
-  if (json) {
-    std::cout << text;
-    return;
-  }
-  const auto study = nlohmann::ordered_json::parse(text);
-  std::cout << summary_table(study) << "\ninfluence zone [m]\n"
-            << text_histogram(study.at("quantities").at("influence_zone_m"), 80);
+  std::cout << (json ? text : study_report(Json::parse(text)));
 }
 
 Exit exit_code(StudyEnd end) {
@@ -163,8 +140,8 @@ Exit study(const StudyOptions& options) try {
   std::vector<std::string> overrides = options.overrides;
   if (options.realizations) overrides.push_back("study.realizations=" + std::to_string(*options.realizations));
   LoadedCase loaded = load_case(options.case_file, overrides);
-  for (const Fault& w : loaded.warnings) std::cerr << "warning: " << w.pointer << " " << w.message << "\n";
-  const Plan plan = make_plan(loaded, choose_seed(options, loaded.value), version());
+  print_warnings(loaded.warnings);
+  const Plan plan = make_plan(loaded, choose_seed(options, loaded.value), version);
   loaded.resolved["study"]["seed"] = plan.seed;
   if (options.prepare) {
     prepare_study(plan, loaded.resolved, options.out);
@@ -182,7 +159,7 @@ Exit study(const StudyOptions& options) try {
   if (end == StudyEnd::too_many_failed)
     std::cerr << "more realizations failed than study.max_failed_share = " << plan.study.max_failed_share
               << " allows; see " << StudyPaths{options.out}.realizations().string() << "\n";
-  if (end != StudyEnd::interrupted && !options.no_figures) draw_figures(options.out);
+  if (end != StudyEnd::interrupted && !options.no_figures) draw_figures(options.out, plot_study);
   print(options.out, options.json);
   return code;
 } catch (const executor::SlurmConfigError& e) {
@@ -230,6 +207,16 @@ void add_study(CLI::App& app, Action& action) {
   verb->callback([options, &action] {
     if (options->executor == "slurm") options->out = fs::absolute(options->out);  // tasks begin in another directory
     action = [options] { return study(*options); };
+  });
+}
+
+/// What `--executor slurm` lets Slurm start on its machines.
+void add_array_task(CLI::App& app, Action& action) {
+  const auto batch = std::make_shared<fs::path>();
+  CLI::App* verb = app.add_subcommand("array-task", "execute the runs of one task of an array job")->group("");
+  verb->add_option("batch", *batch, "directory of the batch")->required();
+  verb->callback([batch, &action] {
+    action = [batch] { return static_cast<Exit>(executor::execute_array_task(executor::BatchDirectory(*batch))); };
   });
 }
 

@@ -12,12 +12,11 @@
 #include "particles/geometry.hpp"
 #include "random_field/random_field.hpp"
 #include "simulation/simulation.hpp"
+#include "support/json.hpp"
 #include "support/run_memory.hpp"
 
 namespace talus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ValidateOptions {
   std::filesystem::path case_file;
@@ -88,7 +87,7 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
   if (d.captured_variance)
     std::printf("captured variance  %.2f %% with %zu terms\n", 100.0 * *d.captured_variance, d.field_terms);
   std::printf("case hash          %s\n", loaded.hash.c_str());
-  for (const Fault& w : loaded.warnings) std::fprintf(stderr, "warning: %s %s\n", w.pointer.c_str(), w.message.c_str());
+  print_warnings(loaded.warnings);
 }
 
 Exit validate(const ValidateOptions& options) try {

@@ -3,10 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <string>
 
 #include "support/error.hpp"
 
 namespace talus::cli {
+
+/// "0.1.0"
+inline const std::string version = TALUS_VERSION;
 
 /// What the chosen verb does; may throw ConfigError, DivergedError, IoError (main maps them to exit codes).
 using Action = std::function<Exit()>;

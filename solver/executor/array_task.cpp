@@ -1,22 +1,20 @@
-#include "executor/array_task.hpp"
+// What an array task of Slurm does on its machine.
 
 #include <signal.h>
 
-#include <charconv>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <iostream>
 #include <utility>
+
+#include "executor/slurm_batch.hpp"
+#include "support/text.hpp"
 
 namespace talus::executor {
 namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-constexpr int io_exit = 5;           ///< talus: a file cannot be read or written
-constexpr int interrupted_exit = 6;  ///< talus: stopped with a checkpoint
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
@@ -43,7 +41,7 @@ class Signals {
 
 /// Whether a run that was asked to stop stopped before it had finished.
 bool broke_off(const ProcessEnd& end) {
-  return end.signal != 0 || end.exit_code == interrupted_exit || end.exit_code == 128 + SIGTERM;
+  return end.signal != 0 || end.exit_code == Exit::interrupted || end.exit_code == Exit::sigterm;
 }
 
 class ArrayTask {
@@ -62,8 +60,8 @@ class ArrayTask {
   }
 
  private:
-  RunStatus outcome(const Run& run, RunPlace place) try { return execute(run, place); } catch (const ProcessError& e) {
-    return {.end = {.exit_code = io_exit}, .why = e.what()};
+  RunStatus outcome(const Run& run, RunPlace place) try { return execute(run, place); } catch (const IoError& e) {
+    return {.end = {.exit_code = static_cast<int>(Exit::io)}, .why = e.what()};
   }
 
   RunStatus execute(const Run& run, RunPlace place) {
@@ -94,17 +92,16 @@ class ArrayTask {
 
 int execute_array_task(const BatchDirectory& batch) {
   const char* text = std::getenv("SLURM_ARRAY_TASK_ID");
-  std::size_t index = 0;
-  if (!text || std::from_chars(text, text + std::strlen(text), index).ptr != text + std::strlen(text) || !*text) {
+  const std::optional<std::int64_t> given = to_integer(text ? text : "");
+  if (!given) {
     std::cerr << "SLURM_ARRAY_TASK_ID is not the index of an array task\n";
     return 2;
   }
-  const std::optional<std::vector<Run>> runs = batch.runs(index);
-  if (!runs) {
+  const auto index = static_cast<std::size_t>(*given);
+  if (const auto runs = batch.runs(index))
+    ArrayTask(batch, index).execute(*runs);
+  else
     std::cerr << batch.path().string() << " holds no runs for this task (any more)\n";
-    return 0;
-  }
-  ArrayTask(batch, index).execute(*runs);
   return 0;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,10 +40,10 @@ class Executor {
   /// Whether another run can be started now.
   virtual bool has_room() const = 0;
   /// Starts a run; its directory may contain the remains of an earlier attempt. poll() reports its end exactly once.
-  /// @throws ProcessError
+  /// @throws IoError
   virtual RunId start(const Run& run) = 0;
   /// The runs that ended since the last call; never blocks.
-  /// @throws ProcessError when runs cannot be executed at all; a later call tries again
+  /// @throws IoError when runs cannot be executed at all; a later call tries again
   virtual std::vector<Ended> poll() = 0;
   /// Asks all runs to write a checkpoint and end.
   virtual void stop_all() = 0;
@@ -53,5 +54,8 @@ class Executor {
   /// Runs continue when this process ends; a later process that starts a run of the same name adopts it.
   virtual bool outlives_this_process() const = 0;
 };
+
+/// Runs as processes of this machine, at most `places` at a time. The destructor kills all of them.
+std::unique_ptr<Executor> make_local_executor(int places);
 
 }  // namespace talus::executor

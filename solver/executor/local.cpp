@@ -1,6 +1,11 @@
-#include "executor/local.hpp"
+// Runs as processes of this machine.
 
 #include <signal.h>
+
+#include <chrono>
+#include <list>
+
+#include "executor/executor.hpp"
 
 namespace talus::executor {
 namespace {
@@ -8,48 +13,64 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-Clock::time_point deadline_of(const Limits& limits) {
-  return limits.wall_seconds == 0 ? Clock::time_point::max() : Clock::now() + std::chrono::seconds(limits.wall_seconds);
-}
+class LocalExecutor final : public Executor {
+ public:
+  explicit LocalExecutor(int places) : places_(static_cast<std::size_t>(places)) {}
+
+  bool has_room() const override { return workers_.size() < places_; }
+
+  RunId start(const Run& run) override {
+    const bool resume = fs::exists(run.directory / "checkpoint.h5");
+    if (!resume) fs::remove_all(run.directory);
+    Command command = run.command;
+    if (resume) command.arguments.emplace_back("--resume");
+    const std::uint64_t limit = command.limits.wall_seconds;
+    workers_.push_back({.id = ++last_,
+                        .resumed = resume,
+                        .deadline = limit == 0 ? Clock::time_point::max() : Clock::now() + std::chrono::seconds(limit),
+                        .process = Process(command, run.log, run.log)});
+    return last_;
+  }
+
+  std::vector<Ended> poll() override {
+    std::vector<Ended> all;
+    std::erase_if(workers_, [&](Worker& worker) {
+      const auto end = worker.process.poll();
+      if (end) all.push_back({.id = worker.id, .end = *end, .resumed = worker.resumed, .timed_out = worker.timed_out});
+      if (!end && !worker.timed_out && Clock::now() > worker.deadline) {
+        worker.timed_out = true;
+        worker.process.signal(SIGKILL);
+      }
+      return end.has_value();
+    });
+    return all;
+  }
+
+  void stop_all() override {
+    for (const Worker& worker : workers_) worker.process.signal(SIGTERM);
+  }
+  void kill(RunId id) override {
+    for (const Worker& worker : workers_)
+      if (worker.id == id) worker.process.signal(SIGKILL);
+  }
+  std::string pending_reason(const std::string&) const override { return {}; }
+  bool outlives_this_process() const override { return false; }
+
+ private:
+  struct Worker {
+    RunId id;
+    bool resumed;
+    Clock::time_point deadline;
+    bool timed_out = false;
+    Process process;
+  };
+  std::size_t places_;
+  RunId last_ = 0;
+  std::list<Worker> workers_;
+};
 
 }  // namespace
 
-RunId LocalExecutor::start(const Run& run) {
-  const bool resume = fs::exists(run.directory / "checkpoint.h5");
-  if (!resume) fs::remove_all(run.directory);
-  Command command = run.command;
-  if (resume) command.arguments.emplace_back("--resume");
-  workers_.push_back({.id = ++last_,
-                      .resumed = resume,
-                      .deadline = deadline_of(command.limits),
-                      .process = Process(command, run.log, run.log)});
-  return last_;
-}
-
-std::vector<Ended> LocalExecutor::poll() {
-  std::vector<Ended> all;
-  for (auto worker = workers_.begin(); worker != workers_.end();) {
-    if (const auto end = worker->process.poll()) {
-      all.push_back({.id = worker->id, .end = *end, .resumed = worker->resumed, .timed_out = worker->timed_out});
-      worker = workers_.erase(worker);
-      continue;
-    }
-    if (!worker->timed_out && Clock::now() > worker->deadline) {
-      worker->timed_out = true;
-      worker->process.signal(SIGKILL);
-    }
-    ++worker;
-  }
-  return all;
-}
-
-void LocalExecutor::stop_all() {
-  for (const Worker& worker : workers_) worker.process.signal(SIGTERM);
-}
-
-void LocalExecutor::kill(RunId id) {
-  for (const Worker& worker : workers_)
-    if (worker.id == id) worker.process.signal(SIGKILL);
-}
+std::unique_ptr<Executor> make_local_executor(int places) { return std::make_unique<LocalExecutor>(places); }
 
 }  // namespace talus::executor

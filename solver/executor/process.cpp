@@ -11,8 +11,9 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <system_error>
 #include <utility>
+
+#include "support/files.hpp"
 
 namespace talus::executor {
 namespace {
@@ -58,9 +59,8 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 
 /// Truncates the file first, so that a full disk is not mistaken for a missing program.
 void create(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) fail("create", path, errno);
-  ::close(file);
+  const FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  if (!file) throw_io_error("create", path, errno);
 }
 
 void limit(pid_t pid, __rlimit_resource what, std::uint64_t value) {
@@ -83,12 +83,6 @@ ProcessEnd decoded(int status) {
 
 }  // namespace
 
-void fail(const std::string& doing, const fs::path& path, int error) {
-  ProcessError thrown("cannot " + doing + " " + path.string() + ": " + std::generic_category().message(error));
-  thrown.error = error;
-  throw thrown;
-}
-
 Process::Process(const Command& command, const fs::path& out, const fs::path& err) {
   create(out);
   if (out != err) create(err);
@@ -100,7 +94,7 @@ Process::Process(const Command& command, const fs::path& out, const fs::path& er
                                  pointers(arguments).data(), command.environment ? ours.data() : environ);
   if (error != 0) {
     pid_ = -1;
-    fail("start", command.arguments.front(), error);
+    throw_io_error("start", command.arguments.front(), error);
   }
   set_limits(pid_, command.limits);
   if (command.niceness > 0) ::setpriority(PRIO_PROCESS, static_cast<id_t>(pid_), command.niceness);

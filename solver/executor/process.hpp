@@ -1,25 +1,17 @@
 #pragma once
-// A child process with an owner.
+// A child process that ends with the object that owns it.
 
 #include <sys/types.h>
 
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "support/error.hpp"
+
 namespace talus::executor {
-
-/// A program could not be started, or a file of its could not be made.
-struct ProcessError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-  int error = 0;  ///< errno
-};
-
-/// @throws ProcessError "cannot DOING PATH: " and what errno `error` means
-[[noreturn]] void fail(const std::string& doing, const std::filesystem::path& path, int error);
 
 /// What a process may use at most; 0: no limit.
 struct Limits {
@@ -32,7 +24,7 @@ struct Limits {
 
 struct Command {
   std::vector<std::string> arguments;  ///< the program first; without a slash it is searched in PATH
-  std::optional<std::vector<std::string>> environment = {};  ///< "NAME=value"; unset: ours
+  std::optional<std::vector<std::string>> environment = {};  ///< "NAME=value"; unset: that of this process
   Limits limits = {};
   int niceness = 0;
 };
@@ -40,7 +32,7 @@ struct Command {
 /// How a process ended.
 struct ProcessEnd {
   int exit_code = 0;  ///< meaningless if killed
-  int signal = 0;     ///< that killed it; 0: it left by itself
+  int signal = 0;     ///< that killed it; 0: it exited
 };
 
 /// A running child: in its own process group, so that Ctrl-C at the terminal reaches only its parent; stdin empty,
@@ -48,7 +40,7 @@ struct ProcessEnd {
 /// when the object goes while it still runs.
 class Process {
  public:
-  /// @throws ProcessError when a file cannot be created or the program cannot be started
+  /// @throws IoError when a file cannot be created or the program cannot be started
   Process(const Command& command, const std::filesystem::path& out, const std::filesystem::path& err);
   ~Process();
   Process(Process&& other) noexcept;
@@ -71,7 +63,7 @@ std::string signal_text(int number);
 /// The last `max_bytes` of a text file; empty where it cannot be read.
 std::string tail(const std::filesystem::path& path, std::size_t max_bytes);
 
-/// The last line that says something.
+/// The last line that is not blank.
 std::string last_line(std::string text);
 
 }  // namespace talus::executor

@@ -13,9 +13,10 @@ class RunTimes {
  public:
   /// A run of the group has ended after so many seconds.
   void ended(const std::string& group, double seconds);
-  /// One runs for so long already.
+  /// A run of the group has been running for so many seconds.
   void still_runs(const std::string& group, double seconds);
-  /// The mean [s]; where none has ended, how long one has run if that is long already; else nothing.
+  /// The mean duration [s]; while no run has ended, the longest time that one has been running if that is at least 10
+  /// s.
   std::optional<double> of(const std::string& group) const;
 
  private:
@@ -26,8 +27,8 @@ class RunTimes {
   std::map<std::string, Sum> groups_;
 };
 
-/// Runs of one array task. So many that starting the task (about a second) costs little; no more than `task_s` take;
-/// and, within that, so few that all free tasks get some.
+/// Number of runs of one array task: enough that the start of the task (about 1 s) costs little, no more than take
+/// `task_s`, and within that few enough that all free tasks get some.
 /// @param runs    that wait
 /// @param free    array tasks that may be begun, >= 1
 /// @param run_s   time of a run; unset: not known yet, and each run is a task

@@ -7,13 +7,16 @@
 #include <set>
 #include <utility>
 
+#include "support/files.hpp"
+
 namespace talus::executor {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t probe_runs = 8;  ///< runs at a time while their duration is unknown
-constexpr int misses = 2;              ///< polls without the task after which it is gone
+constexpr std::size_t probe_runs = 8;         ///< runs at a time while their duration is unknown
+constexpr int misses = 2;                     ///< polls without the task after which it is gone
+constexpr std::chrono::seconds patience{30};  ///< time in which a continuing study must adopt its runs
 
 constexpr const char* never_submitted = "never submitted";
 
@@ -115,8 +118,8 @@ std::vector<Ended> SlurmExecutor::poll() {
   return std::exchange(ended_, {});
 }
 
-/// The files first, then the verdict of a queue that was asked before they were read: a task that was over then has
-/// written all that it will.
+/// Reads the status files, then applies a reply of squeue that was requested before: a task that had ended by then has
+/// written all its files.
 void SlurmExecutor::poll_cycle() {
   next_cycle_ = Steady::now() + poll_;
   for (Batch& batch : batches_) collect(batch);
@@ -146,7 +149,7 @@ void SlurmExecutor::take_in(Batch& batch, RunPlace place) {
     const RunStatus status = batch.directory.status(place);
     if (status.end.exit_code == 0 && status.end.signal == 0) times_.ended(entry.run.group, status.seconds);
     end(entry, {.end = status.end, .resumed = status.resumed, .timed_out = status.timed_out, .why = status.why});
-  } catch (const BatchError& e) {  // read again; if it stays so, the task will be gone and the run lost
+  } catch (const IoError& e) {  // read again; if it stays so, the task will be gone and the run lost
     if (!std::exchange(entry.told, true)) note_(e.what());
   }
 }
@@ -193,7 +196,7 @@ void SlurmExecutor::reconcile(Batch& batch) {
   }
 }
 
-/// The task is gone. Its first run without a status is the one it had begun; those behind it are as they were.
+/// The task is gone. Its first run without a status is the one that it had begun; the runs after it have not begun.
 void SlurmExecutor::mark_lost(Batch& batch, std::size_t index, const std::string& state) {
   bool begun = true;
   Task& task = batch.tasks[index];
@@ -225,6 +228,63 @@ void SlurmExecutor::drop_finished() {
     fs::remove_all(batch->directory.path(), ignored);
     batch = batches_.erase(batch);
   }
+}
+
+// Array jobs that an earlier process submitted and that went on without it.
+
+void SlurmExecutor::recover() {
+  std::error_code error;
+  fs::create_directories(directory_, error);
+  std::vector<fs::path> left;
+  for (fs::directory_iterator entry(directory_, error), end; !error && entry != end; entry.increment(error))
+    if (entry->is_directory()) left.push_back(entry->path());
+  if (error) throw_io_error("read", directory_, error.value());
+  std::sort(left.begin(), left.end());
+  for (const fs::path& path : left) recover(path);
+}
+
+void SlurmExecutor::recover(const fs::path& path) {
+  Batch& batch = batches_.emplace_back(Batch{.directory = BatchDirectory(path), .since = recovered_});
+  batch.job = batch.directory.job();
+  try {
+    for (std::size_t i = 0;; ++i) {
+      const std::optional<std::vector<Run>> runs = batch.directory.runs(i);
+      if (!runs) break;
+      Task& task = batch.tasks.emplace_back();
+      for (const Run& run : *runs) task.entries.push_back({.run = run});
+    }
+  } catch (const IoError& e) {  // its tasks cannot read it either
+    note_(e.what());
+    batch.tasks.clear();
+    return;
+  }
+  collect(batch);
+  for (std::size_t i = 0; i < batch.tasks.size(); ++i)
+    for (std::size_t p = 0; p < batch.tasks[i].entries.size(); ++p)
+      if (const Entry& entry = batch.tasks[i].entries[p]; !entry.ended) unclaimed_[entry.run.name] = {&batch, {i, p}};
+}
+
+/// Whether an earlier process handed the run to Slurm; the run is then adopted.
+bool SlurmExecutor::take_over(const Run& run, RunId id) {
+  const auto at = unclaimed_.find(run.name);
+  if (at == unclaimed_.end()) return false;
+  const Place place = at->second;
+  unclaimed_.erase(at);
+  entry(place).id = id;
+  open_[id] = place;
+  return true;
+}
+
+/// Runs that no study has adopted by now are dropped.
+void SlurmExecutor::drop_unclaimed() {
+  if (unclaimed_.empty() || Steady::now() - recovered_ < patience || !has_room()) return;
+  for (const auto& [name, place] : unclaimed_) {
+    entry(place).killed = true;
+    Task& task = place.batch->tasks[place.run.task];
+    task.unwanted =
+        std::none_of(task.entries.begin(), task.entries.end(), [](const Entry& e) { return e.id != 0 && !e.ended; });
+  }
+  unclaimed_.clear();
 }
 
 }  // namespace talus::executor

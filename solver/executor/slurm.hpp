@@ -28,7 +28,7 @@ class SlurmExecutor final : public Executor {
   /// @param directory   for batches; seen by all machines under this path
   /// @param array_task  command that executes an array task; gets the directory of the batch as one more argument
   /// @param threads     of each run
-  /// @param note        told what an operator should know
+  /// @param note        called with what an operator should know
   SlurmExecutor(SlurmConfig config, std::filesystem::path directory, std::vector<std::string> array_task, int threads,
                 Note note);
 
@@ -54,7 +54,7 @@ class SlurmExecutor final : public Executor {
     int missed = 0;  ///< consecutive polls of the queue that did not find it
     std::optional<Steady::time_point> running_since = {};
     std::string reason = {};  ///< Slurm's word for why it waits
-    bool over = false;        ///< it will write no more
+    bool over = false;        ///< it writes nothing any more
     bool unwanted = false;
   };
   struct Batch {
@@ -86,13 +86,14 @@ class SlurmExecutor final : public Executor {
   std::size_t open_tasks() const;
   void estimate_load(const Run& run, bool waits);
   void estimate_all_load();
-  // slurm_recover.cpp: what an earlier process left
+  // slurm.cpp: what an earlier process left
   void recover();
   void recover(const std::filesystem::path& path);
   void drop_unclaimed();
   bool take_over(const Run& run, RunId id);
   // slurm_calls.cpp: Slurm's programs
   void end_calls();
+  static std::string answer(const Call& call, const ProcessEnd& end);
   void submitted(const Call& call, const ProcessEnd& end);
   void not_submitted(const std::string& why);
   void queue_seen(const Call& call, const ProcessEnd& end);
@@ -114,7 +115,7 @@ class SlurmExecutor final : public Executor {
   std::deque<Entry> waiting_;
   std::list<Batch> batches_;
   std::map<RunId, Place> open_;
-  std::map<std::string, Place> unclaimed_;  ///< runs of an earlier process of ours, by name
+  std::map<std::string, Place> unclaimed_;  ///< runs that an earlier process submitted, by name
   Steady::time_point recovered_;
   RunTimes times_;
   std::vector<Ended> ended_;
@@ -125,7 +126,7 @@ class SlurmExecutor final : public Executor {
   Batch* submitting_ = nullptr;      ///< what sbatch_ is about
   std::optional<SlurmQueue> queue_;  ///< empty before the first poll
   Steady::time_point queue_begun_{}, next_cycle_{}, next_queue_{}, next_submit_{}, next_cancel_{};
-  int refusals_ = 0;             ///< of sbatch, one after the other
+  int refusals_ = 0;             ///< consecutive refusals of sbatch
   bool answered_since_ = false;  ///< squeue worked since the first of them
   bool away_ = false;            ///< squeue does not work
   bool stopping_ = false;

@@ -1,33 +1,29 @@
 // sbatch, squeue and scancel: called in the background, their output checked.
 
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <cstring>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <utility>
 
 #include "executor/slurm.hpp"
-
-extern "C" char** environ;
+#include "support/files.hpp"
 
 namespace talus::executor {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds most_patience{120};  ///< with one call
+constexpr std::chrono::seconds most_patience{120};  ///< maximum duration of one call
 constexpr std::size_t max_answer = std::size_t{1} << 30;
 constexpr int most_refusals = 3;
 constexpr std::size_t most_tasks = 1000;  ///< of an array job; Slurm's own default allows 1001
 constexpr std::size_t most_runs = 5000;   ///< of an array job, so that its directory stays quick to read
 
-/// What Slurm's programs, and through them the runs, get of our environment.
+/// The environment variables that Slurm's programs, and through them the runs, inherit.
 std::vector<std::string> environment() {
   constexpr std::array exact{"PATH",   "HOME", "USER",       "LOGNAME",         "LANG",
                              "LC_ALL", "TZ",   "SLURM_CONF", "LD_LIBRARY_PATH", "TALUS_SIMD"};
@@ -41,14 +37,7 @@ std::vector<std::string> environment() {
   return all;
 }
 
-std::string content(const fs::path& path) {
-  std::error_code error;
-  if (fs::file_size(path, error) > max_answer || error) return {};
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// Sorts by time, and differs from every other.
+/// A unique name; names sort by time.
 std::string batch_name() {
   static int counter = 0;
   std::random_device entropy;
@@ -56,12 +45,6 @@ std::string batch_name() {
   std::snprintf(text, sizeof text, "%012llx-%04x-%08x", static_cast<unsigned long long>(std::time(nullptr)),
                 counter++ & 0xffff, entropy());
   return text;
-}
-
-std::string complaint(const fs::path& err, const ProcessEnd& end) {
-  const std::string said = last_line(tail(err, 4000));
-  if (!said.empty()) return said;
-  return end.signal ? "killed: " + signal_text(end.signal) : "exit code " + std::to_string(end.exit_code);
 }
 
 }  // namespace
@@ -93,31 +76,40 @@ void SlurmExecutor::end_calls() {
   }
 }
 
+/// The output of a program that succeeded. @throws IoError with its last line on stderr otherwise
+std::string SlurmExecutor::answer(const Call& call, const ProcessEnd& end) {
+  if (end.signal == 0 && end.exit_code == 0) return read_file(call.out, max_answer);
+  std::string why = last_line(tail(call.err, 4000));
+  if (why.empty())
+    why = end.signal ? "killed: " + signal_text(end.signal) : "exit code " + std::to_string(end.exit_code);
+  throw IoError(call.out.stem().string() + ": " + why);
+}
+
 void SlurmExecutor::queue_seen(const Call& call, const ProcessEnd& end) try {
-  if (end.signal != 0 || end.exit_code != 0) throw SlurmAnswerError("squeue: " + complaint(call.err, end));
-  queue_.emplace(content(call.out));
+  queue_.emplace(answer(call, end));
   queue_begun_ = call.begin;
   next_cycle_ = {};
   answered_since_ = true;
   if (std::exchange(away_, false)) note_("Slurm answers again");
-} catch (const SlurmAnswerError& e) {
+} catch (const IoError& e) {
   if (!std::exchange(away_, true)) note_(std::string(e.what()) + "; waiting for Slurm");
 }
 
 /// sbatch has come back.
-void SlurmExecutor::submitted(const Call& call, const ProcessEnd& end) try {
-  if (end.signal != 0 || end.exit_code != 0) throw SlurmAnswerError("sbatch: " + complaint(call.err, end));
+void SlurmExecutor::submitted(const Call& call, const ProcessEnd& end) {
   Batch& batch = *submitting_;
-  batch.job = parse_job_id(content(call.out));
+  try {
+    batch.job = parse_job_id(answer(call, end));
+  } catch (const IoError& e) {
+    return not_submitted(e.what());
+  }
   batch.since = Steady::now();
   submitting_ = nullptr;
   refusals_ = 0;
   batch.directory.write_job(*batch.job);
-} catch (const SlurmAnswerError& e) {
-  not_submitted(e.what());
 }
 
-/// Its directory goes first: should Slurm have taken the job all the same, its tasks find nothing to do.
+/// Removes the directory first: if Slurm did accept the job, its tasks find nothing to do.
 void SlurmExecutor::not_submitted(const std::string& why) {
   std::error_code ignored;
   fs::remove_all(submitting_->directory.path(), ignored);
@@ -140,10 +132,10 @@ void SlurmExecutor::not_submitted(const std::string& why) {
   }
   if (refusals_ < most_refusals || !answered_since_ || open_tasks() > 0) return;
   refusals_ = 0;
-  throw ProcessError("Slurm takes no runs: " + why);
+  throw IoError("Slurm takes no runs: " + why);
 }
 
-/// Takes from what waits, in order: of each group its own tasks, since their runs take unlike long.
+/// Takes waiting runs in order. A task has runs of one group only, since runs of different groups differ in duration.
 std::vector<std::vector<SlurmExecutor::Entry>> SlurmExecutor::next_tasks(std::size_t free) {
   std::map<std::string, std::size_t> waits;
   for (const Entry& entry : waiting_) ++waits[entry.run.group];
@@ -210,7 +202,7 @@ void SlurmExecutor::submit() {
   try {
     batch.directory.write(runs);
     sbatch_.emplace(call(sbatch_arguments(batch.directory, runs.size())));
-  } catch (const ProcessError& e) {
+  } catch (const IoError& e) {
     not_submitted(e.what());
   }
   next_submit_ = std::max(next_submit_, Steady::now() + poll_);
@@ -223,7 +215,7 @@ void SlurmExecutor::ask_queue() {
   squeue_.emplace(call({"squeue", "--json", "--states=all"}));  // newer ones leave out what has ended
 }
 
-/// Again and again until they are gone: the controller may have been away.
+/// Repeated until the tasks are gone, since the controller may have been unavailable.
 void SlurmExecutor::cancel_unwanted() {
   if (scancel_ || Steady::now() < next_cancel_) return;
   std::vector<std::string> arguments{"scancel"};

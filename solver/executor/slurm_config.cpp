@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <functional>
+#include <map>
 
 #include "support/files.hpp"
 #include "support/json.hpp"
@@ -9,98 +12,82 @@
 namespace talus::executor {
 namespace {
 
-/// What we say to sbatch ourselves.
+/// Options that Talus itself passes to sbatch.
 constexpr std::array ours{
     "--array",   "-a",       "--chdir",  "-D",     "--cpus-per-task", "-c", "--error",  "-e", "--export", "--job-name",
     "-J",        "-o",       "--output", "-W",     "--open-mode",     "-n", "--ntasks", "-N", "--nodes",  "--parsable",
     "--requeue", "--signal", "--wait",   "--wrap", "--no-requeue"};
 
-/// The members of one object, each read once; a member left over is a fault.
-class Reader {
- public:
-  Reader(Json document, std::string place) : document_(std::move(document)), place_(std::move(place)) {
-    if (document_.is_object()) return;
-    fault("", "is not a JSON object");
-    document_ = Json::object();
-  }
-  void text(const char* key, std::string& into) {
-    const Json value = take(key);
-    if (value.is_null()) return;
-    if (!value.is_string()) return fault(key, "is not a text");
+/// Reads a value; returns what is wrong with it, or an empty text.
+using ValueReader = std::function<std::string(const Json&)>;
+
+ValueReader text_into(std::string& into) {
+  return [&into](const Json& value) -> std::string {
+    if (!value.is_string()) return "is not a text";
     into = value.get<std::string>();
-    if (into.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.,") !=
-        std::string::npos)
-      fault(key, "may hold letters, digits and _-., only");
-  }
-  template <class T>
-  void number(const char* key, T& into, double least, double most) {
-    const Json value = take(key);
-    if (value.is_null()) return;
+    const auto allowed = [](unsigned char c) {
+      return (c < 128 && std::isalnum(c)) ||
+             std::string_view("_-.,").find(static_cast<char>(c)) != std::string_view::npos;
+    };
+    return std::all_of(into.begin(), into.end(), allowed) ? "" : "may hold letters, digits and _-., only";
+  };
+}
+
+template <class T>
+ValueReader number_into(T& into, double least, double most) {
+  return [=, &into](const Json& value) -> std::string {
     const bool right = std::is_integral_v<T> ? value.is_number_integer() : value.is_number();
     if (!right || value.get<double>() < least || value.get<double>() > most)
-      return fault(key, std::string("is not a") + (std::is_integral_v<T> ? "n integer" : " number") + " from " +
-                            Json(least).dump() + " to " + Json(most).dump());
+      return std::string("is not a") + (std::is_integral_v<T> ? "n integer" : " number") + " from " +
+             Json(least).dump() + " to " + Json(most).dump();
     into = value.get<T>();
-  }
-  void options(const char* key, std::vector<std::string>& into) {
-    const Json value = take(key);
-    if (value.is_null()) return;
-    if (!value.is_array()) return fault(key, "is not a list");
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      const std::string at = std::string(key) + "/" + std::to_string(i);
-      if (!value[i].is_string() || !value[i].get<std::string>().starts_with('-')) {
-        fault(at, "is not an option of sbatch such as \"--qos=low\"");
-        continue;
-      }
-      into.push_back(value[i]);
-      const std::string& option = into.back();
-      const std::string name = option.starts_with("--") ? option.substr(0, option.find('=')) : option.substr(0, 2);
-      if (std::find(ours.begin(), ours.end(), name) != ours.end()) fault(at, name + " is set by Talus itself");
-    }
-  }
-  void finish() {
-    for (const auto& [key, value] : document_.items()) fault(key, "is not a known key");
-    if (!faults_.empty()) throw SlurmConfigError(faults_);
-  }
+    return "";
+  };
+}
 
- private:
-  Json take(const char* key) {
-    const auto at = document_.find(key);
-    if (at == document_.end()) return {};
-    Json value = *at;
-    document_.erase(at);
-    if (value.is_null()) fault(key, "is null");
-    return value;
-  }
-  void fault(const std::string& pointer, const std::string& message) {
-    faults_ += (faults_.empty() ? "" : "\n") + place_ + (pointer.empty() ? "" : ": /" + pointer) + " " + message;
-  }
-
-  Json document_;
-  std::string place_, faults_;
-};
+std::string option_into(std::vector<std::string>& into, const Json& value) {
+  if (!value.is_string() || !value.get<std::string>().starts_with('-'))
+    return "is not an option of sbatch such as \"--qos=low\"";
+  const std::string& option = into.emplace_back(value);
+  const std::string name = option.starts_with("--") ? option.substr(0, option.find('=')) : option.substr(0, 2);
+  return std::find(ours.begin(), ours.end(), name) == ours.end() ? "" : name + " is set by Talus itself";
+}
 
 }  // namespace
 
 SlurmConfig parse_slurm_config(const std::string& text, const std::string& place) {
+  SlurmConfig config;
+  std::string faults;
+  const auto note = [&](const std::string& pointer, const std::string& fault) {
+    if (!fault.empty()) faults += (faults.empty() ? "" : "\n") + place + ": /" + pointer + " " + fault;
+  };
+  const auto options_into = [&](const Json& list) -> std::string {
+    if (!list.is_array()) return "is not a list";
+    for (std::size_t i = 0; i < list.size(); ++i)
+      note("sbatch_options/" + std::to_string(i), option_into(config.sbatch_options, list[i]));
+    return "";
+  };
+  const std::map<std::string, ValueReader> keys{{"partition", text_into(config.partition)},
+                                                {"account", text_into(config.account)},
+                                                {"time_limit_min", number_into(config.time_limit_min, 1, 525600)},
+                                                {"memory_MiB", number_into(config.memory_MiB, 1, 1 << 30)},
+                                                {"cpus_per_task", number_into(config.cpus_per_task, 1, 4096)},
+                                                {"sbatch_options", options_into},
+                                                {"array_tasks", number_into(config.array_tasks, 1, 100000)},
+                                                {"task_s", number_into(config.task_s, 1, 86400)},
+                                                {"poll_s", number_into(config.poll_s, 0.05, 600)}};
   Json document;
   try {
     document = parse_json(text, place);
   } catch (const ConfigError& e) {
     throw SlurmConfigError(e.what());
   }
-  SlurmConfig config;
-  Reader reader(document, place);
-  reader.text("partition", config.partition);
-  reader.text("account", config.account);
-  reader.number("time_limit_min", config.time_limit_min, 1, 525600);
-  reader.number("memory_MiB", config.memory_MiB, 1, 1 << 30);
-  reader.number("cpus_per_task", config.cpus_per_task, 1, 4096);
-  reader.options("sbatch_options", config.sbatch_options);
-  reader.number("array_tasks", config.array_tasks, 1, 100000);
-  reader.number("task_s", config.task_s, 1, 86400);
-  reader.number("poll_s", config.poll_s, 0.05, 600);
-  reader.finish();
+  if (!document.is_object()) throw SlurmConfigError(place + " is not a JSON object");
+  for (const auto& [key, value] : document.items()) {
+    const auto known = keys.find(key);
+    note(key, known == keys.end() ? "is not a known key" : value.is_null() ? "is null" : known->second(value));
+  }
+  if (!faults.empty()) throw SlurmConfigError(faults);
   return config;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// How an operator wants runs to be handed to Slurm. Comes from a file of theirs, never from a request.
+// How runs are submitted to Slurm. Comes from a file of the operator, never from a request.
 
 #include <filesystem>
 #include <stdexcept>

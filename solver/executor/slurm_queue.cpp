@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <vector>
+
+#include "support/error.hpp"
+#include "support/text.hpp"
 
 namespace talus::executor {
 namespace {
@@ -13,10 +15,10 @@ using Json = nlohmann::json;
 
 constexpr std::int64_t most_tasks = 4'000'000;  ///< of one array in Slurm
 
-/// States that a job does not leave by itself.
+/// Final states of a job.
 constexpr std::array over{"COMPLETED", "FAILED",   "CANCELLED",     "TIMEOUT",  "NODE_FAIL",
                           "PREEMPTED", "DEADLINE", "OUT_OF_MEMORY", "BOOT_FAIL"};
-/// Words that stand beside a state and say that the job is not over after all.
+/// Flags beside a final state that say that the job has not ended yet.
 constexpr std::array not_yet{"COMPLETING", "REQUEUED", "REQUEUE_HOLD", "REQUEUE_FED", "SPECIAL_EXIT"};
 
 template <class Words>
@@ -26,29 +28,20 @@ bool is_in(const Words& words, const std::string& word) {
 
 /// A number as 22.05 writes it (7, null), or as later versions do ({"set": true, "number": 7}).
 std::optional<std::int64_t> number(const Json& job, const char* key, const std::string& place) {
-  const auto at = job.find(key);
-  if (at == job.end() || at->is_null()) return std::nullopt;
-  const Json* value = &*at;
-  if (value->is_object()) {
-    if (!value->value("set", false)) return std::nullopt;
-    const auto inner = value->find("number");
-    if (inner == value->end()) throw SlurmAnswerError(place + "/" + key + " has no number");
-    value = &*inner;
-  }
-  if (!value->is_number_integer() || value->get<std::int64_t>() < 0)
-    throw SlurmAnswerError(place + "/" + key + " is not a number of a job");
-  return value->get<std::int64_t>();
+  Json value = job.value(key, Json());
+  if (value.is_object()) value = value.value("set", false) ? value.value("number", Json("none")) : Json();
+  if (value.is_null()) return std::nullopt;
+  if (!value.is_number_integer() || value < 0) throw IoError(place + "/" + key + " is not a number of a job");
+  return value.get<std::int64_t>();
 }
 
 /// 22.05 has one word, later versions a list.
 QueuedTask state(const Json& job, const std::string& place) {
   std::vector<std::string> words;
-  const auto at = job.find("job_state");
-  if (at != job.end() && at->is_string()) words.push_back(*at);
-  if (at != job.end() && at->is_array())
-    for (const Json& word : *at)
-      if (word.is_string()) words.push_back(word);
-  if (words.empty()) throw SlurmAnswerError(place + "/job_state is not a state");
+  const Json given = job.value("job_state", Json());
+  for (const Json& word : given.is_array() ? given : Json::array({given}))
+    if (word.is_string()) words.push_back(word);
+  if (words.empty()) throw IoError(place + "/job_state is not a state");
   const auto has = [&](const auto& list) {
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) { return is_in(list, word); });
   };
@@ -56,23 +49,16 @@ QueuedTask state(const Json& job, const std::string& place) {
 }
 
 std::string text(const Json& job, const char* key) {
-  const auto at = job.find(key);
-  return at != job.end() && at->is_string() ? at->get<std::string>() : std::string{};
-}
-
-std::optional<std::int64_t> integer(const std::string& digits) {
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size() || value < 0) return std::nullopt;
-  return value;
+  const Json value = job.value(key, Json());
+  return value.is_string() ? value.get<std::string>() : std::string{};
 }
 
 /// "5" or "7-11" or "7-11:2"
 bool add_range(const std::string& part, std::set<std::int64_t>& all) {
   const std::size_t dash = part.find('-'), colon = part.find(':');
-  const auto first = integer(part.substr(0, dash));
-  const auto last = dash == std::string::npos ? first : integer(part.substr(dash + 1, colon - dash - 1));
-  const auto step = colon == std::string::npos ? std::optional<std::int64_t>(1) : integer(part.substr(colon + 1));
+  const auto first = to_integer(part.substr(0, dash));
+  const auto last = dash == std::string::npos ? first : to_integer(part.substr(dash + 1, colon - dash - 1));
+  const auto step = colon == std::string::npos ? std::optional<std::int64_t>(1) : to_integer(part.substr(colon + 1));
   if (!first || !last || !step || *step < 1 || *last < *first || *last > most_tasks) return false;
   for (std::int64_t i = *first; i <= *last; i += *step) all.insert(i);
   return true;
@@ -82,17 +68,17 @@ bool add_range(const std::string& part, std::set<std::int64_t>& all) {
 
 SlurmQueue::SlurmQueue(const std::string& json) {
   const Json document = Json::parse(json, nullptr, false);
-  if (!document.is_object()) throw SlurmAnswerError("squeue: the answer is not a JSON object");
+  if (!document.is_object()) throw IoError("squeue: the answer is not a JSON object");
   const auto jobs = document.find("jobs");
-  if (jobs == document.end() || !jobs->is_array()) throw SlurmAnswerError("squeue: /jobs is not a list");
+  if (jobs == document.end() || !jobs->is_array()) throw IoError("squeue: /jobs is not a list");
   if (const auto errors = document.find("errors"); errors != document.end() && errors->is_array() && !errors->empty())
-    throw SlurmAnswerError("squeue: " + errors->front().dump());
+    throw IoError("squeue: " + errors->front().dump());
   for (std::size_t i = 0; i < jobs->size(); ++i) {
     const Json& job = (*jobs)[i];
     const std::string place = "squeue: /jobs/" + std::to_string(i);
-    if (!job.is_object()) throw SlurmAnswerError(place + " is not an object");
+    if (!job.is_object()) throw IoError(place + " is not an object");
     const auto array = number(job, "array_job_id", place);
-    if (!array || *array == 0) continue;  // not an array, so none of ours
+    if (!array || *array == 0) continue;  // not an array, so not from Talus
     QueuedTask task = state(job, place);
     if (const std::string reason = text(job, "state_reason"); reason != "None") task.reason = reason;
     names_[text(job, "name")] = *array;
@@ -116,8 +102,8 @@ std::optional<std::int64_t> SlurmQueue::job_named(const std::string& name) const
 }
 
 std::int64_t parse_job_id(const std::string& answer) {
-  const auto id = integer(answer.substr(0, answer.find_first_of(";\n")));
-  if (!id || *id == 0) throw SlurmAnswerError("sbatch: \"" + answer.substr(0, 200) + "\" is not the number of a job");
+  const auto id = to_integer(answer.substr(0, answer.find_first_of(";\n")));
+  if (!id || *id == 0) throw IoError("sbatch: \"" + answer.substr(0, 200) + "\" is not the number of a job");
   return *id;
 }
 

@@ -5,20 +5,14 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <stdexcept>
 #include <string>
 
 namespace talus::executor {
 
-/// An answer of Slurm that cannot be understood.
-struct SlurmAnswerError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-/// An array task as the queue has it.
+/// An array task in the reply of squeue.
 struct QueuedTask {
   std::string state;  ///< Slurm's word: "PENDING", "NODE_FAIL"
-  bool alive = true;  ///< it waits, runs, or will
+  bool alive = true;  ///< it waits or runs, or Slurm will requeue it
   bool running = false;
   std::string reason = {};  ///< why it waits, Slurm's word: "Resources", "JobHeldUser"; empty where it gives none
 };
@@ -27,10 +21,10 @@ struct QueuedTask {
 class SlurmQueue {
  public:
   /// @param json  output of `squeue --json` of Slurm 22.05 or newer
-  /// @throws SlurmAnswerError naming the place
+  /// @throws IoError naming the place
   explicit SlurmQueue(const std::string& json);
 
-  /// Nothing where Slurm does not know it: never submitted, or ended long ago.
+  /// Unset if Slurm does not know the task: never submitted, or ended long ago.
   std::optional<QueuedTask> task(std::int64_t array_job, std::int64_t index) const;
   /// The array job of this name.
   std::optional<std::int64_t> job_named(const std::string& name) const;
@@ -46,7 +40,7 @@ class SlurmQueue {
 };
 
 /// The job of sbatch's answer: "123" or "123;cluster".
-/// @throws SlurmAnswerError
+/// @throws IoError
 std::int64_t parse_job_id(const std::string& answer);
 
 /// "0-2,5,7-11:2%4" as numbers; nothing where it is cut short with dots or cannot be understood.

@@ -1,6 +1,6 @@
 #include "figures/study_files.hpp"
 
-#include "study/csv.hpp"
+#include "study/publish.hpp"
 #include "support/error.hpp"
 #include "support/json.hpp"
 

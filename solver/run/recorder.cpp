@@ -21,7 +21,8 @@ Recorder::Recorder(const std::filesystem::path& directory, const Simulation& sim
       for (const HistoryRow& row : read_history(history_file_))
         if (row.step <= simulation.steps()) history_.push_back(row);
   } else {
-    write_beside([this, path, frame = simulation.frame()] { snapshots_.emplace(path, frame); });
+    writing_ =
+        std::async(std::launch::async, [this, path, frame = simulation.frame()] { snapshots_.emplace(path, frame); });
   }
   if (history_.empty()) history_.push_back(simulation.history_row());
   while (!due_.empty() && due_.front() <= simulation.time()) due_.erase(due_.begin());
@@ -32,7 +33,7 @@ void Recorder::record(const Simulation& simulation) {
   if (simulation.time() >= history_.back().time + history_interval_) history_.push_back(simulation.history_row());
   if (due_.empty() || simulation.time() < due_.front()) return;
   wait_for_snapshot();
-  write_beside([this, frame = simulation.frame()] { snapshots_->append(frame); });
+  writing_ = std::async(std::launch::async, [this, frame = simulation.frame()] { snapshots_->append(frame); });
   while (!due_.empty() && due_.front() <= simulation.time()) due_.erase(due_.begin());
 }
 

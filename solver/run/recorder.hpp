@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <future>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "io/vtkhdf.hpp"
@@ -36,11 +35,6 @@ class Recorder {
   void finish(const Simulation& simulation);
 
  private:
-  template <class Task>
-  void write_beside(Task&& task) {
-    writing_ = std::async(std::launch::async, std::forward<Task>(task));
-  }
-
   std::filesystem::path history_file_;
   std::optional<SnapshotWriter> snapshots_;
   std::vector<double> due_;  ///< snapshot times to come [s]

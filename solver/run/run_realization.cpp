@@ -40,21 +40,6 @@ RunOutcome finished_run(const fs::path& directory, const RunRequest& request) {
   return {true, result.time, result, read_file(file, max_result_bytes)};
 }
 
-/// Wall clock of a run, over all of its processes.
-class RunClock {
- public:
-  explicit RunClock(double earlier) : earlier_(earlier) {}
-  /// Of this process [s].
-  double elapsed() const { return std::chrono::duration<double>(Clock::now() - started_).count(); }
-  /// Of the run [s].
-  double total() const { return earlier_ + elapsed(); }
-  void add_earlier(double seconds) { earlier_ += seconds; }
-
- private:
-  double earlier_;
-  Clock::time_point started_ = Clock::now();
-};
-
 }  // namespace
 
 std::uint64_t choose_seed(std::optional<std::uint64_t> given, const LoadedCase& loaded, const fs::path& directory,
@@ -72,7 +57,9 @@ std::uint64_t choose_seed(std::optional<std::uint64_t> given, const LoadedCase& 
 }
 
 RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const RunHooks& hooks) {
-  RunClock clock(0.0);
+  const Clock::time_point begin = Clock::now();
+  const auto elapsed = [begin] { return std::chrono::duration<double>(Clock::now() - begin).count(); };  // [s]
+  double earlier = 0.0;  // wall clock of the processes that this one continues [s]
   const Case& problem = loaded.value;
   const RunIdentity identity{request.seed, request.realization, request.perturbation.value_or(0.0)};
   loaded.resolved["study"]["seed"] = request.seed;
@@ -94,13 +81,13 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
   if (resumed) {
     const CheckpointState state = read_checkpoint(checkpoint_file, header);
     simulation.restore(state);
-    clock.add_earlier(state.wall_clock);
+    earlier = state.wall_clock;
   }
   write_file_atomically(out.path() / "case.resolved.json", loaded.resolved.dump(2) + "\n");
   Recorder recorder(out.path(), simulation, problem.model.time, resumed);
   const auto write_checkpoint_now = [&] {
     CheckpointState state = simulation.state();
-    state.wall_clock = clock.total();
+    state.wall_clock = earlier + elapsed();
     recorder.write_history();
     recorder.wait_for_snapshot();
     write_checkpoint(checkpoint_file, state, header);
@@ -113,15 +100,15 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
         write_checkpoint_now();
         return {false, simulation.time(), {}, {}};
       }
-      const double before = clock.elapsed();
+      const double before = elapsed();
       simulation.step(problem.model.time.end);
-      threads.record(clock.elapsed() - before);
+      threads.record(elapsed() - before);
       omp_set_num_threads(threads.count());
       recorder.record(simulation);
-      hooks.show_progress(simulation, clock.elapsed());
-      if (clock.elapsed() > next_checkpoint) {
+      hooks.show_progress(simulation, elapsed());
+      if (elapsed() > next_checkpoint) {
         write_checkpoint_now();
-        next_checkpoint = clock.elapsed() + checkpoint_period;
+        next_checkpoint = elapsed() + checkpoint_period;
       }
     }
   } catch (const DivergedError&) {
@@ -131,7 +118,7 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
   recorder.finish(simulation);
 
   RunOutcome outcome{true, simulation.time(), simulation.result(), {}};
-  outcome.result.wall_clock = clock.total();
+  outcome.result.wall_clock = earlier + elapsed();
   outcome.result.threads = threads.most_used();
   outcome.result.field = soil.summary;
   outcome.document = result_json(outcome.result, provenance).dump(2) + "\n";

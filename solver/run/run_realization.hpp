@@ -8,7 +8,7 @@
 #include <string>
 
 #include "case/load.hpp"
-#include "monte_carlo/realization.hpp"
+#include "run/realization.hpp"
 #include "simulation/simulation.hpp"
 
 namespace talus {

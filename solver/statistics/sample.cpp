@@ -71,11 +71,6 @@ SampleMoments moments(std::span<const double> sample) {
   return m;
 }
 
-std::optional<double> mean_half_width(const SampleMoments& m) {
-  if (!m.mean_ci95) return std::nullopt;
-  return 0.5 * (*m.mean_ci95->hi - *m.mean_ci95->lo);
-}
-
 Ranks quantile_ranks(std::int64_t n, double p) {
   const boost::math::binomial b(static_cast<double>(n), p);
   const auto below = [&](std::int64_t k) {

@@ -34,9 +34,6 @@ struct SampleMoments {
 /// Moments of `sample`, in any order; sums are taken in the order given.
 SampleMoments moments(std::span<const double> sample);
 
-/// Half the width of `mean_ci95`; unset for n < 2.
-std::optional<double> mean_half_width(const SampleMoments& m);
-
 /// A quantile of a sample, its interval, and what failed realizations could make of it.
 struct Quantile {
   double p = 0.5;      ///< probability, in [0, 1]

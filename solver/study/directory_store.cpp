@@ -1,8 +1,5 @@
 #include "study/directory_store.hpp"
 
-#include <algorithm>
-#include <iterator>
-
 #include "support/files.hpp"
 
 namespace talus {
@@ -21,41 +18,20 @@ std::optional<RunKey> run_of_file(const std::string& name, const std::string& en
 
 }  // namespace
 
-std::vector<Record> read_records(const StudyPaths& paths, RunKind kind, const StudyIdentity& identity) {
-  std::vector<Record> records;
+Records read_records(const StudyPaths& paths, RunKind kind, const StudyIdentity& identity) {
+  Records records;
   if (!fs::exists(paths.results(kind))) return records;  // nothing has been run yet
   for (const auto& entry : fs::directory_iterator(paths.results(kind))) {
     const std::string name = entry.path().filename().string();
     if (const auto failed = run_of_file(name, ".failed.json", kind)) {
       if (auto reason = read_failure(entry.path()))
-        records.push_back({.index = failed->index, .reason = std::move(*reason)});
+        records.try_emplace(failed->index, Record{.index = failed->index, .reason = std::move(*reason)});
     } else if (const auto done = run_of_file(name, ".json", kind)) {
-      if (auto record = read_result(entry.path(), *done, identity)) records.push_back(std::move(*record));
+      // Where a run has failed too, it was retried: the result counts.
+      if (auto record = read_result(entry.path(), *done, identity)) records[done->index] = std::move(*record);
     }
   }
-  // Where a run has both, it was retried: the result counts.
-  std::sort(records.begin(), records.end(),
-            [](const Record& a, const Record& b) { return a.index != b.index ? a.index < b.index : a.done > b.done; });
-  const auto same = [](const Record& a, const Record& b) { return a.index == b.index; };
-  records.erase(std::unique(records.begin(), records.end(), same), records.end());
   return records;
-}
-
-bool DirectoryStore::Records::contains(std::int64_t index) const {
-  if (new_.contains(index)) return true;
-  const auto at = std::lower_bound(old_.begin(), old_.end(), index,
-                                   [](const Record& record, std::int64_t i) { return record.index < i; });
-  return at != old_.end() && at->index == index;
-}
-
-const std::vector<Record>& DirectoryStore::Records::in_order() {
-  if (new_.empty()) return old_;
-  const auto middle = std::ssize(old_);
-  for (auto& [index, record] : new_) old_.push_back(std::move(record));
-  new_.clear();
-  std::inplace_merge(old_.begin(), old_.begin() + middle, old_.end(),
-                     [](const Record& a, const Record& b) { return a.index < b.index; });
-  return old_;
 }
 
 DirectoryStore::DirectoryStore(StudyPaths paths, const Plan& plan, std::int64_t first, std::int64_t end)
@@ -64,22 +40,16 @@ DirectoryStore::DirectoryStore(StudyPaths paths, const Plan& plan, std::int64_t 
             .identity = {.seed = plan.seed, .case_hash = plan.case_hash},
             .spec = plan.study,
             .first = first,
-            .end = end} {
-  runs_.assign(read_records(info_.paths, RunKind::realization, info_.identity));
-  replicates_.assign(read_records(info_.paths, RunKind::replicate, info_.identity));
-}
+            .end = end},
+      runs_(read_records(info_.paths, RunKind::realization, info_.identity)),
+      replicates_(read_records(info_.paths, RunKind::replicate, info_.identity)) {}
 
 void DirectoryStore::forget_failures() {
-  for (const RunKind kind : {RunKind::realization, RunKind::replicate}) {
-    Records& all = records({.kind = kind});
-    std::vector<Record> done;
-    for (const Record& record : all.in_order())
-      if (record.done)
-        done.push_back(record);
-      else
-        fs::remove(info_.paths.failure({.kind = kind, .index = record.index}));
-    all.assign(std::move(done));
-  }
+  for (const RunKind kind : {RunKind::realization, RunKind::replicate})
+    std::erase_if(records(kind), [&](const auto& of) {
+      if (!of.second.done) fs::remove(info_.paths.failure({.kind = kind, .index = of.first}));
+      return !of.second.done;
+    });
 }
 
 bool DirectoryStore::runs_here(const RunKey& key) const {
@@ -98,7 +68,7 @@ std::optional<Claim> DirectoryStore::claim() {
   const std::int64_t replicates = info_.spec.noise_floor_replicates;
   for (const std::int64_t last = replicates + info_.end; rank_ < last;) {
     const RunKey key = run_of_rank(rank_++, replicates);
-    if (!runs_here(key) || records(key).contains(key.index)) continue;
+    if (!runs_here(key) || records(key.kind).contains(key.index)) continue;
     claimed_[key] = 1;
     return Claim{.key = key};
   }
@@ -107,9 +77,7 @@ std::optional<Claim> DirectoryStore::claim() {
 
 void DirectoryStore::visit_records(StudyNumber, const Visitor& visit) {
   for (const RunKind kind : {RunKind::realization, RunKind::replicate})
-    for (const Record& record : records({.kind = kind}).in_order())
-      visit({.kind = kind, .index = record.index},
-            record.done ? std::optional(record.measures.influence_zone) : std::nullopt);
+    for (const auto& [index, record] : records(kind)) visit({.kind = kind, .index = index}, record.influence_zone());
 }
 
 bool DirectoryStore::is_current(const Claim& claim) {
@@ -125,13 +93,13 @@ bool DirectoryStore::end_claim(const Claim& claim) {
 
 bool DirectoryStore::accept(const Claim& claim, const Record& record) {
   if (!end_claim(claim)) return false;
-  records(claim.key).add(record);
+  records(claim.key.kind)[claim.key.index] = record;
   return true;
 }
 
 bool DirectoryStore::fail(const Claim& claim, const Failure& failure) {
   if (!end_claim(claim)) return false;
-  records(claim.key).add({.index = claim.key.index, .reason = failure.reason});
+  records(claim.key.kind)[claim.key.index] = {.index = claim.key.index, .reason = failure.reason};
   return true;
 }
 

@@ -72,7 +72,7 @@ void Engine::start(const Claim& claim) {
   runs_.emplace(id, UnderWay{claim, time_limit_s});
 }
 
-/// A result that was finished before an earlier process of ours ended counts.
+/// Accepts a result that a run of an earlier process has left.
 bool Engine::take_over(const Claim& claim) {
   const StudyInfo& info = open(claim.study).info;
   try {
@@ -152,7 +152,8 @@ void Engine::record(UnderWay& run) {
   }
 }
 
-/// The profiles and the place of the result first: whoever is killed in between finds the result and does it again.
+/// Keeps the profiles and moves the result before it is recorded: after a kill in between, the next process finds the
+/// result and repeats the rest.
 void Engine::record_done(const Claim& claim, const Record& record, RunEvent::Kind kind) {
   Study& study = open(claim.study);
   const StudyPaths& paths = study.info.paths;

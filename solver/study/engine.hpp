@@ -28,7 +28,7 @@ struct EngineOptions {
   /// The program of a run, with absolute paths.
   std::function<executor::Command(const StudyInfo&, const RunKey&)> command;
   std::function<bool()> room_on_disk;           ///< unset: always
-  std::function<void(const RunEvent&)> report;  ///< unset: nobody listens
+  std::function<void(const RunEvent&)> report;  ///< unset: nothing is reported
 };
 
 /// To be used by one thread. The poll rate is the caller's.
@@ -41,7 +41,7 @@ class Engine {
   /// @throws what the store throws
   bool record_ended();
   /// Starts runs while the executor has room and the store has runs.
-  /// @throws IoError where the disk is full; ProcessError, and what the store throws
+  /// @throws IoError where the disk is full or a process cannot be started, and what the store throws
   void start_runs();
   /// Renews the claims of all runs under way, and kills the runs whose claim is lost.
   void renew_claims();
@@ -55,7 +55,7 @@ class Engine {
   /// The estimator of a study, read from the store where the engine has not seen it yet.
   const Estimator& estimator(StudyNumber number) { return open(number).estimator; }
   const StudyInfo& study(StudyNumber number) { return open(number).info; }
-  /// Reads a study anew before it is used again: it has been extended, retried or dismissed.
+  /// Has a study read again before its next use: it has been extended, retried or dismissed.
   void forget(StudyNumber number);
   const executor::Executor& executor() const { return *executor_; }
 
@@ -63,13 +63,13 @@ class Engine {
   struct Study {
     StudyInfo info;
     Estimator estimator;
-    bool stale = false;  ///< to be read anew
+    bool stale = false;  ///< to be read again
   };
   struct UnderWay {
     Claim claim;
     std::uint64_t time_limit_s;
     std::optional<executor::Ended> ended = {};  ///< not recorded yet
-    bool unwanted = false;                      ///< killed, since its claim is lost or its study needs it no more
+    bool unwanted = false;  ///< killed, since its claim is lost or its study does not need it any more
   };
 
   Study& open(StudyNumber number);

@@ -5,27 +5,25 @@
 #include <cmath>
 
 namespace talus {
-namespace {
-
-/// Adds the n-th value to a mean and a sum of squared deviations (Welford 1962).
-void welford(double x, std::int64_t n, double& mean, double& square) {
+void RunningMean::add(double x) {
   const double step = x - mean;
-  mean += step / static_cast<double>(n);
+  mean += step / static_cast<double>(++n);
   square += step * (x - mean);
 }
 
-/// t_{0.975, n-1} s / sqrt(n), n >= 2
-double half_width(double square, std::int64_t n) {
+std::optional<double> RunningMean::half_width() const {
+  if (n < 2) return std::nullopt;
   const double count = static_cast<double>(n);
   const double t = boost::math::quantile(boost::math::complement(boost::math::students_t(count - 1.0), 0.025));
   return t * std::sqrt(square / (count - 1.0) / count);
 }
 
-}  // namespace
-
-std::int64_t rank_of(const RunKey& key, std::int64_t replicates) {
-  if (key.is_replicate()) return key.index;
-  return key.index == 0 ? 0 : replicates + key.index;
+void StopRule::add(std::int64_t index, std::optional<double> influence_zone) {
+  if (!half_width_ || size_ || index != next_) return;
+  ++next_;
+  if (!influence_zone) return;
+  zones_.add(*influence_zone);
+  if (zones_.n >= least_to_stop && *zones_.half_width() <= *half_width_) size_ = next_;
 }
 
 RunKey run_of_rank(std::int64_t rank, std::int64_t replicates) {
@@ -58,26 +56,19 @@ void Estimator::add(const RunKey& key, std::optional<double> influence_zone) {
     farthest_index_ = key.index;
   }
   if (key.index < first_ || key.index >= end_) return;
-  if (!influence_zone) {
+  if (influence_zone)
+    zones_.add(*influence_zone);
+  else
     ++failed_;
-    return;
-  }
-  welford(*influence_zone, ++done_, mean_, square_);
 }
 
 Estimator::Decision Estimator::decision() const {
-  if (too_many_failed(failed_, done_, planned(), max_failed_share_)) return Decision::too_many_failed;
+  if (too_many_failed(failed_, done(), planned(), max_failed_share_)) return Decision::too_many_failed;
   return stop_.size() && *stop_.size() < realizations_ ? Decision::enough : Decision::go_on;
 }
 
 bool Estimator::is_farthest(std::int64_t index, double influence_zone) const {
   return farthest_index_ < 0 || influence_zone > farthest_ || (influence_zone == farthest_ && index <= farthest_index_);
-}
-
-std::optional<double> Estimator::mean() const { return done_ > 0 ? std::optional(mean_) : std::nullopt; }
-
-std::optional<double> Estimator::mean_half_width() const {
-  return done_ > 1 ? std::optional(half_width(square_, done_)) : std::nullopt;
 }
 
 }  // namespace talus

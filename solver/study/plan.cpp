@@ -9,12 +9,11 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::ordered_json;
 
 constexpr const char* plan_name = "plan.json";
 constexpr const char* sampling_names[] = {"monte_carlo", "latin_hypercube"};
 
-ordered_json to_json(const Plan& plan) {
+Json to_json(const Plan& plan) {
   return {{"program", "talus"},
           {"version", plan.version},
           {"title", plan.title},
@@ -24,13 +23,12 @@ ordered_json to_json(const Plan& plan) {
           {"sampling", sampling_names[static_cast<int>(plan.study.sampling)]},
           {"stratified_modes", plan.study.stratified_modes},
           {"noise_floor_replicates", plan.study.noise_floor_replicates},
-          {"stop_when_ci_half_width_below_m",
-           plan.study.stop_half_width ? ordered_json(*plan.study.stop_half_width) : ordered_json()},
+          {"stop_when_ci_half_width_below_m", plan.study.stop_half_width ? Json(*plan.study.stop_half_width) : Json()},
           {"max_failed_share", plan.study.max_failed_share},
           {"histogram_edges_m", plan.study.histogram_edges}};
 }
 
-Plan from_json(const ordered_json& json) {
+Plan from_json(const Json& json) {
   Plan plan{.title = json.at("title"),
             .case_hash = json.at("case_hash"),
             .version = json.at("version"),
@@ -54,11 +52,7 @@ std::optional<Plan> find_plan(const fs::path& directory) {
   const fs::path path = directory / plan_name;
   std::error_code error;
   if (!fs::exists(path, error)) return std::nullopt;
-  try {
-    return from_json(read_json(path, std::size_t{1} << 24));
-  } catch (const nlohmann::json::exception& e) {
-    throw IoError(path.string() + " is not a plan of Talus (" + e.what() + ")");
-  }
+  return read_json(path, std::size_t{1} << 24, "a plan of Talus", from_json);
 }
 
 void write_plan(const fs::path& directory, const Plan& plan) {

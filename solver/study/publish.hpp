@@ -5,23 +5,29 @@
 #include <functional>
 #include <vector>
 
-#include "study/paths.hpp"
 #include "study/plan.hpp"
 #include "study/record.hpp"
+#include "study/run_key.hpp"
 #include "study/summary.hpp"
 
 namespace talus {
 
-/// The records that the study counts: all, or, where it stopped early, those before the stop.
-std::vector<Record> counted(const Plan& plan, const std::vector<Record>& runs);
+/// Reads realizations.csv or noise_floor.csv: RFC 4180, a header, then one line per record in order of index, with
+/// numbers that read back exactly. `index_name` heads the first column ("index", "replicate").
+/// @throws IoError naming file and line: another header, a wrong number of fields, not a number, indices out of order
+/// or twice
+std::vector<Record> read_csv(const std::filesystem::path& path, const std::string& index_name);
+
+/// The line of a record in these tables.
+std::string csv_line(const Record& record);
 
 /// Takes a record.
 using RecordSink = std::function<void(const Record&)>;
 /// Gives the records of one kind to a sink, in order of index.
 using RecordSource = std::function<void(const RecordSink&)>;
 
-/// Writes realizations.csv, noise_floor.csv and study.json, each by rename. Records pass one by one; memory: that of
-/// StudySummary.
+/// Writes realizations.csv, noise_floor.csv and study.json, each by rename; of a study that stopped early, the records
+/// before the stop. Records pass one by one; memory: that of StudySummary.
 /// @throws IoError
 StudySummary publish(const StudyPaths& paths, const Plan& plan, const RecordSource& runs, const RecordSource& floor);
 

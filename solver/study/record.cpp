@@ -1,6 +1,5 @@
 #include "study/record.hpp"
 
-#include "study/run_file.hpp"
 #include "support/files.hpp"
 #include "support/json.hpp"
 
@@ -25,18 +24,28 @@ void link_or_copy(const fs::path& from, const fs::path& to) {
 
 std::optional<Record> read_result(const fs::path& file, const RunKey& key, const StudyIdentity& of) {
   if (!fs::exists(file)) return std::nullopt;
-  std::optional<RunFile> run;
+  const auto read = [&](const Json& json) -> std::optional<Record> {
+    Record record{.index = key.index, .done = true};
+    visit_numbers(record, [&](const char* name, const char* object, auto& value) {
+      (object ? json.at(object) : json).at(name).get_to(value);
+    });
+    json.at("digest").get_to(record.digest);
+    const bool interrupted = json.at("ending") == "interrupted";
+    const Json& from = json.at("provenance");
+    if (from.at("seed") != of.seed || from.at("case_hash") != of.case_hash ||
+        from.at("realization") != key.drawn_realization() || from.at("perturbation").is_null() == key.is_replicate())
+      throw ForeignResult(
+          file.string() +
+          " is of another run or study (seed, case hash, realization or perturbation differ); remove it");
+    return interrupted ? std::nullopt : std::optional(std::move(record));
+  };
   try {
-    run = read_run_file(file, key.index);
+    return read_json(file, max_result_bytes, "the result of a run", read);
+  } catch (const ForeignResult&) {
+    throw;
   } catch (const IoError&) {
     return std::nullopt;
   }
-  if (run->seed != of.seed || run->case_hash != of.case_hash || run->realization != key.drawn_realization() ||
-      run->perturbed != key.is_replicate())
-    throw ForeignResult(file.string() +
-                        " is of another run or study (seed, case hash, realization or perturbation differ); remove it");
-  if (run->interrupted) return std::nullopt;
-  return std::move(run->record);
 }
 
 void write_failure(const StudyPaths& paths, const RunKey& key, const Failure& failure, std::int64_t attempts,
@@ -51,12 +60,10 @@ void write_failure(const StudyPaths& paths, const RunKey& key, const Failure& fa
   write_file_atomically(paths.failure(key), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
-std::optional<std::string> read_failure(const fs::path& file) {
-  try {
-    return read_json(file, max_result_bytes).at("reason").get<std::string>();
-  } catch (const nlohmann::json::exception&) {
-  } catch (const IoError&) {
-  }
+std::optional<std::string> read_failure(const fs::path& file) try {
+  return read_json(file, max_result_bytes, "a failure record",
+                   [](const Json& json) { return json.at("reason").get<std::string>(); });
+} catch (const IoError&) {
   return std::nullopt;
 }
 

@@ -1,12 +1,14 @@
 #pragma once
-// What became of one run.
+// The outcome of one run: read from its result.json, or the record of its failure.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 
-#include "study/paths.hpp"
+#include "study/run_key.hpp"
 #include "support/error.hpp"
 #include "support/measures.hpp"
 
@@ -23,7 +25,31 @@ struct Record {
   double wall_clock = 0.0;  ///< [s]
   std::string digest = {};  ///< of the final state
   std::string reason = {};  ///< why it failed, one line; empty if done
+
+  /// [m]; unset: it failed
+  std::optional<double> influence_zone() const { return done ? std::optional(measures.influence_zone) : std::nullopt; }
 };
+
+/// A number of a run beside its measures: what it drew, and what it cost.
+struct Covariate {
+  const char* key;     ///< in result.json, in the tables, and as SQL column
+  const char* object;  ///< of result.json that holds it; null: the document itself
+  std::variant<double Record::*, std::int64_t Record::*> member;
+};
+inline constexpr std::array covariate_table{Covariate{"mean_friction_angle_deg", "field", &Record::mean_phi_deg},
+                                            Covariate{"captured_variance", "field", &Record::captured_variance},
+                                            Covariate{"steps", nullptr, &Record::steps},
+                                            Covariate{"wall_clock_s", nullptr, &Record::wall_clock}};
+
+/// Calls `use(key, object, value)` for every number of a record, in the order of the tables and of the SQL columns: the
+/// measures, then the covariates.
+template <class AnyRecord, class Use>
+void visit_numbers(AnyRecord& record, const Use& use) {
+  const char* const document = nullptr;
+  for (const Measure& measure : measure_table) use(measure.key, document, record.measures.*measure.member);
+  for (const Covariate& of : covariate_table)
+    std::visit([&](auto member) { use(of.key, of.object, record.*member); }, of.member);
+}
 
 /// Why a run failed.
 struct Failure {

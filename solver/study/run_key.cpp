@@ -1,7 +1,5 @@
 #include "study/run_key.hpp"
 
-#include <charconv>
-
 #include "support/text.hpp"
 
 namespace talus {
@@ -25,15 +23,11 @@ std::string file_stem(const RunKey& key) {
 std::string work_name(const RunKey& key) { return (key.is_replicate() ? replicate_prefix : "") + file_stem(key); }
 
 std::optional<RunKey> run_of_work_name(const std::string& name) {
-  RunKey key;
-  std::string digits = name;
-  if (name.starts_with(replicate_prefix)) {
-    key.kind = RunKind::replicate;
-    digits = name.substr(std::string(replicate_prefix).size());
-  }
-  const char* end = digits.data() + digits.size();
-  const auto [stop, error] = std::from_chars(digits.data(), end, key.index);
-  return error == std::errc() && stop == end && key.index >= 0 ? std::optional(key) : std::nullopt;
+  const bool replicate = name.starts_with(replicate_prefix);
+  const auto index =
+      to_integer(std::string_view(name).substr(replicate ? std::string_view(replicate_prefix).size() : 0));
+  if (!index) return std::nullopt;
+  return RunKey{.kind = replicate ? RunKind::replicate : RunKind::realization, .index = *index};
 }
 
 std::string perturbation(const RunKey& key) {

@@ -2,7 +2,6 @@
 
 #include <thread>
 
-#include "executor/local.hpp"
 #include "study/directory_store.hpp"
 #include "study/engine.hpp"
 #include "study/publish.hpp"
@@ -17,7 +16,7 @@ using Clock = std::chrono::steady_clock;
 
 std::unique_ptr<executor::Executor> make_executor(const RunStudyOptions& options, const StudyPaths& paths) {
   if (options.make_executor) return options.make_executor(paths);
-  return std::make_unique<executor::LocalExecutor>(options.workers);
+  return executor::make_local_executor(options.workers);
 }
 
 /// Runs a study that has been claimed: the engine with a directory, a progress report, tables now and then.
@@ -38,7 +37,7 @@ class StudyRunner {
   EngineOptions engine_options();
   void run_all(Engine& engine);
   void stop_runs(Engine& engine);
-  void publish() { write_tables(paths_, plan_, counted(plan_, store_.runs()), store_.replicates()); }
+  void publish();
   void report(Engine& engine, bool now = false);
   void note_event(const RunEvent& event);
   void note(const std::string& text) const {
@@ -57,18 +56,32 @@ class StudyRunner {
 };
 
 /// Workers inherit this lock and hold it as long as they live. When a study is killed its workers may live on for a
-/// moment; two writers in one working directory would spoil it, so the next study waits here.
+/// moment; two writers in one working directory would spoil it, so the next study waits here. On a file system without
+/// locks the study goes on: local workers die with their study, results appear by rename, and a run gives the same
+/// result whoever carries it out.
 void StudyRunner::wait_for_earlier_workers() {
   fs::create_directories(paths_.work());
   const Clock::time_point begin = Clock::now();
-  for (bool told = false; !(workers_lock_ = try_lock(paths_.work() / "lock", true));) {
+  for (bool told = false;; told = true) {
+    TriedLock lock = try_lock(paths_.work() / "lock", true);
+    if (!lock.supported) note("the file system has no locks: do not start a second study in " + paths_.root.string());
+    workers_lock_ = std::move(lock.file);
+    if (workers_lock_) return;
     if (!told) note("waiting for workers of an earlier study here to end");
-    told = true;
     if (interrupts() > 0) return;
     if (Clock::now() - begin > options_.grace)
       throw IoError("workers of an earlier study still run in " + paths_.root.string() + "; end them first");
     std::this_thread::sleep_for(options_.poll);
   }
+}
+
+void StudyRunner::publish() {
+  const auto source = [this](RunKind kind) {
+    return [this, kind](const RecordSink& take) {
+      for (const auto& [index, record] : std::as_const(store_).records(kind)) take(record);
+    };
+  };
+  talus::publish(paths_, plan_, source(RunKind::realization), source(RunKind::replicate));
 }
 
 void StudyRunner::note_event(const RunEvent& event) {
@@ -143,7 +156,7 @@ void StudyRunner::run_all(Engine& engine) {
     const Clock::time_point begin = Clock::now();
     if (begin < publish_at) continue;
     publish();
-    // A long table takes its time: at most a twentieth of ours.
+    // Writing long tables takes at most a twentieth of the time.
     publish_at = Clock::now() + std::max<Clock::duration>(options_.publish_every, 20 * (Clock::now() - begin));
   }
 }
@@ -206,8 +219,6 @@ StudyEnd run_study(const Plan& plan, const nlohmann::ordered_json& resolved, con
     const StudyEnd end = StudyRunner(plan, directory, options).run();
     if (end == StudyEnd::finished || end == StudyEnd::stopped_early) claimed.mark_finished();
     return end;
-  } catch (const executor::ProcessError& e) {
-    throw IoError(e.what());
   } catch (const fs::filesystem_error& e) {
     throw_io_error("write", e.path1().empty() ? directory : e.path1(), e.code().value());
   }

@@ -11,11 +11,25 @@
 
 #include "executor/executor.hpp"
 #include "study/outcome.hpp"
-#include "study/paths.hpp"
 #include "study/plan.hpp"
-#include "study/progress.hpp"
+#include "study/run_key.hpp"
 
 namespace talus {
+
+/// Where a study stands.
+struct Progress {
+  std::int64_t planned = 0;  ///< realizations to be run here
+  std::int64_t done = 0;
+  std::int64_t failed = 0;
+  std::int64_t floor_planned = 0;  ///< noise-floor replicates
+  std::int64_t floor_made = 0;     ///< done or failed
+  std::int64_t made_now = 0;       ///< runs ended since this process began
+  int running = 0;
+  double elapsed = 0.0;                        ///< since this process began [s]
+  std::optional<double> mean = {};             ///< influence zone [m]
+  std::optional<double> mean_half_width = {};  ///< of its 95 % interval [m]
+  std::string pending_reason = {};             ///< why no run is under way, where that is known
+};
 
 /// How to run a study; none of it changes a result.
 struct RunStudyOptions {
@@ -36,8 +50,8 @@ struct RunStudyOptions {
   std::chrono::seconds grace{60};                 ///< for workers to checkpoint, or for those of a killed study to end
 };
 
-/// Makes `directory` the directory of the study without running anything: the plan and the case, for whoever runs the
-/// realizations; a plan that is there already may be made longer.
+/// Makes `directory` the directory of the study without running anything: the plan and the case, for the process that
+/// runs the realizations; a plan that is there already may be made longer.
 /// @throws ConfigError, IoError as run_study
 void prepare_study(const Plan& plan, const nlohmann::ordered_json& resolved, const std::filesystem::path& directory);
 

@@ -7,7 +7,6 @@
 
 #include "statistics/histogram.hpp"
 #include "statistics/sample.hpp"
-#include "study/stop_rule.hpp"
 
 namespace talus {
 namespace {
@@ -101,12 +100,31 @@ Json notes_json(const Plan& plan) {
   return notes;
 }
 
-/// Values of one measure over the records that are done.
-std::vector<double> values(const std::vector<Record>& records, double Measures::*member) {
-  std::vector<double> all;
-  for (const Record& r : records)
-    if (r.done && !std::isnan(r.measures.*member)) all.push_back(r.measures.*member);
-  return all;
+/// One measure: its statistics, and how much of its spread is the numerics' own.
+/// @param edges  of the histogram; empty: chosen from the data
+Json quantity_json(const MeasureSample& sample, const std::vector<double>& sorted, const std::vector<double>& edges) {
+  const SampleMoments m = moments(sample.values);
+  const SampleMoments noise = moments(sample.noise);
+  const std::optional<Ratio> ratio = stdev_ratio(m, noise);
+  Json quantity = moments_json(m);
+  quantity["quantiles"] = quantiles_json(sorted, sample.failed);
+  quantity["histogram"] = histogram_json(sorted, edges);
+  quantity["exceedance"] = exceedance_json(sorted, sample.failed);
+  quantity["noise_floor_stdev"] = json_of(noise.stdev);
+  quantity["noise_floor_stdev_ci95"] = json_of(noise.stdev_ci95);
+  quantity["stdev_over_noise_floor"] = ratio ? Json(ratio->value) : Json();
+  quantity["stdev_over_noise_floor_ci95"] = ratio ? json_of(ratio->ci95) : Json();
+  return quantity;
+}
+
+std::vector<double> sorted(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+/// The edges that the case gives for the fronts.
+std::vector<double> given_edges(const Plan& plan, const Measure& measure) {
+  return measure.front ? plan.study.histogram_edges : std::vector<double>{};
 }
 
 }  // namespace
@@ -114,7 +132,7 @@ std::vector<double> values(const std::vector<Record>& records, double Measures::
 bool StudySummary::add(const Record& record) {
   if (stop_.size()) return false;
   const double zone = record.measures.influence_zone;
-  stop_.add(record.index, record.done ? std::optional(zone) : std::nullopt);
+  stop_.add(record.index, record.influence_zone());
   if (next_ < record.index) missing_.push_back({next_, record.index - 1});
   next_ = record.index + 1;
   if (record.index == 0) origin_ = record;
@@ -130,17 +148,28 @@ bool StudySummary::add(const Record& record) {
   wall_clock_ += record.wall_clock;
   steps_ += record.steps;
   if (!captured_variance_) captured_variance_ = record.captured_variance;
-  if (!shortest_ || zone < shortest_->influence_zone) shortest_ = {record.index, zone};
-  if (!farthest_ || zone > farthest_->influence_zone) farthest_ = {record.index, zone};
+  if (!shortest_ || zone < shortest_->second) shortest_ = {record.index, zone};
+  if (!farthest_ || zone > farthest_->second) farthest_ = {record.index, zone};
   return true;
 }
 
+MeasureSample StudySummary::sample(const Measure& measure) const {
+  std::vector<double> noise;
+  const auto add = [&](const Record& r) {
+    if (r.done && !std::isnan(r.measures.*measure.member)) noise.push_back(r.measures.*measure.member);
+  };
+  if (origin_ && !replicates_.empty()) add(*origin_);
+  std::for_each(replicates_.begin(), replicates_.end(), add);
+  return {.values = samples_[static_cast<std::size_t>(&measure - measure_table.data())],
+          .noise = std::move(noise),
+          .failed = failed(),
+          .complete = missing_.empty() && next_ >= until()};
+}
+
 Json StudySummary::realizations_json() const {
-  const std::int64_t planned = plan_.study.realizations;
-  const std::int64_t until = stopped_early() ? *stop_.size() : planned;
   Json missing = missing_;
-  if (next_ < until) missing.push_back({next_, until - 1});
-  return {{"planned", planned},
+  if (next_ < until()) missing.push_back({next_, until() - 1});
+  return {{"planned", plan_.study.realizations},
           {"done", done()},
           {"failed", failed()},
           {"complete", missing.empty()},
@@ -148,28 +177,6 @@ Json StudySummary::realizations_json() const {
           {"missing", missing},
           {"max_failed_share", plan_.study.max_failed_share},
           {"stop_when_ci_half_width_below_m", json_of(plan_.study.stop_half_width)}};
-}
-
-/// One measure: its statistics, and how much of its spread is the numerics' own.
-Json StudySummary::quantity_json(std::size_t k) const {
-  const Measure& measure = measure_table[k];
-  std::vector<Record> replicates = replicates_;
-  if (origin_ && !replicates.empty()) replicates.insert(replicates.begin(), *origin_);
-  const SampleMoments m = moments(samples_[k]);
-  const SampleMoments noise = moments(values(replicates, measure.member));
-  const std::optional<Ratio> ratio = stdev_ratio(m, noise);
-
-  Json quantity = moments_json(m);
-  std::vector<double> sorted = samples_[k];
-  std::sort(sorted.begin(), sorted.end());
-  quantity["quantiles"] = quantiles_json(sorted, failed());
-  quantity["histogram"] = histogram_json(sorted, measure.front ? plan_.study.histogram_edges : std::vector<double>{});
-  quantity["exceedance"] = exceedance_json(sorted, failed());
-  quantity["noise_floor_stdev"] = json_of(noise.stdev);
-  quantity["noise_floor_stdev_ci95"] = json_of(noise.stdev_ci95);
-  quantity["stdev_over_noise_floor"] = ratio ? Json(ratio->value) : Json();
-  quantity["stdev_over_noise_floor_ci95"] = ratio ? json_of(ratio->ci95) : Json();
-  return quantity;
 }
 
 Json StudySummary::mean_phi_json() const {
@@ -196,50 +203,43 @@ Json StudySummary::json() const {
                   {"sampling", is_hypercube(plan_) ? "latin_hypercube" : "monte_carlo"}}},
                 {"realizations", realizations_json()}};
   if (is_hypercube(plan_)) study["provenance"]["stratified_modes"] = plan_.study.stratified_modes;
-  for (std::size_t k = 0; k < measure_table.size(); ++k) study["quantities"][measure_table[k].key] = quantity_json(k);
+  for (const Measure& measure : measure_table) {
+    const MeasureSample of = sample(measure);
+    study["quantities"][measure.key] = quantity_json(of, sorted(of.values), given_edges(plan_, measure));
+  }
   study["captured_variance"] = json_of(captured_variance_);
   study["mean_friction_angle_deg"] = mean_phi_json();
   study["noise_floor"] = replicates_json();
-  study["extremes"] = {{"shortest_realization", shortest_ ? Json(shortest_->index) : Json()},
-                       {"farthest_realization", farthest_ ? Json(farthest_->index) : Json()}};
+  study["extremes"] = {{"shortest_realization", shortest_ ? Json(shortest_->first) : Json()},
+                       {"farthest_realization", farthest_ ? Json(farthest_->first) : Json()}};
   study["failures"] = failures_;
   study["effort"] = {{"wall_clock_s", wall_clock_}, {"steps", steps_}};
   study["notes"] = notes_json(plan_);
   return study;
 }
 
-Json summarize(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor) {
+StudySummary summary_of(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor) {
   StudySummary summary(plan);
   for (const Record& r : runs) summary.add(r);
   for (const Record& r : floor) summary.add_replicate(r);
-  return summary.json();
+  return summary;
 }
 
 Json distribution(const Plan& plan, const Measure& measure, const MeasureSample& sample, const Bins& bins) {
-  const SampleMoments m = moments(sample.values);
-  const SampleMoments noise = moments(sample.noise);
-  const std::optional<Ratio> ratio = stdev_ratio(m, noise);
-  std::vector<double> sorted = sample.values;
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<double> edges = bins.edges;
-  if (bins.count > 0) edges = equal_edges(sorted, bins.count);
-  if (edges.empty() && measure.front) edges = plan.study.histogram_edges;
-  Json histogram = histogram_json(sorted, edges);
-  if (bins.count > 0) histogram["edges_given"] = false;
-  return {{"quantity", measure.key},
-          {"planned", plan.study.realizations},
-          {"done", m.n},
-          {"failed", sample.failed},
-          {"complete", sample.complete},
-          {"n", m.n},
-          {"mean", json_of(m.mean)},
-          {"mean_ci95", json_of(m.mean_ci95)},
-          {"stdev", json_of(m.stdev)},
-          {"min", json_of(m.min)},
-          {"max", json_of(m.max)},
-          {"noise_floor_stdev", json_of(noise.stdev)},
-          {"stdev_over_noise_floor", ratio ? Json(ratio->value) : Json()},
-          {"histogram", std::move(histogram)}};
+  const std::vector<double> values = sorted(sample.values);
+  std::vector<double> edges = bins.count > 0 ? equal_edges(values, bins.count) : bins.edges;
+  if (edges.empty()) edges = given_edges(plan, measure);
+  Json quantity = quantity_json(sample, values, edges);
+  if (bins.count > 0) quantity["histogram"]["edges_given"] = false;
+  Json answer = {{"quantity", measure.key},
+                 {"planned", plan.study.realizations},
+                 {"done", values.size()},
+                 {"failed", sample.failed},
+                 {"complete", sample.complete}};
+  for (const char* key :
+       {"n", "mean", "mean_ci95", "stdev", "min", "max", "noise_floor_stdev", "stdev_over_noise_floor", "histogram"})
+    answer[key] = std::move(quantity[key]);
+  return answer;
 }
 
 }  // namespace talus

@@ -4,15 +4,24 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "study/estimator.hpp"
 #include "study/plan.hpp"
 #include "study/record.hpp"
-#include "study/stop_rule.hpp"
 #include "support/json.hpp"
 #include "support/measures.hpp"
 
 namespace talus {
+
+/// How the values of one measure are distributed.
+struct MeasureSample {
+  std::vector<double> values;  ///< of the realizations done, in order of index
+  std::vector<double> noise;   ///< of realization 0 and its replicates, in order; empty without replicates
+  std::int64_t failed = 0;
+  bool complete = false;  ///< every realization of the study has ended
+};
 
 /// Takes in the records of a study one by one and gives study.json (schemas/study.schema.json). Holds 8 bytes a measure
 /// and realization, and the reasons of failures; the time is that of sorting each measure once.
@@ -28,6 +37,7 @@ class StudySummary {
 
   /// The content of study.json.
   Json json() const;
+  MeasureSample sample(const Measure& measure) const;
 
   std::int64_t done() const { return static_cast<std::int64_t>(phi_.size()); }
   std::int64_t failed() const { return static_cast<std::int64_t>(failures_.size()); }
@@ -35,13 +45,8 @@ class StudySummary {
   bool stopped_early() const { return stop_.size() && *stop_.size() < plan_.study.realizations; }
 
  private:
-  struct Extreme {
-    std::int64_t index;
-    double influence_zone;
-  };
-
+  std::int64_t until() const { return stopped_early() ? *stop_.size() : plan_.study.realizations; }
   Json realizations_json() const;
-  Json quantity_json(std::size_t k) const;
   Json mean_phi_json() const;
   Json replicates_json() const;
 
@@ -55,23 +60,15 @@ class StudySummary {
   double wall_clock_ = 0.0;       ///< [s]
   std::int64_t steps_ = 0;
   std::optional<double> captured_variance_;
-  std::optional<Extreme> shortest_, farthest_;
+  std::optional<std::pair<std::int64_t, double>> shortest_, farthest_;  ///< index and influence zone [m]
   std::optional<Record> origin_;  ///< realization 0: itself a replicate, the one with k = 0
   std::vector<Record> replicates_;
 };
 
-/// The content of study.json. A pure function: a study and `talus stats` on its tables give the same.
+/// The summary of records in memory. A pure function: a study and `talus stats` on its tables give the same.
 /// @param runs   in order of index; at most one per realization
 /// @param floor  replicates of realization 0 that differ by rounding-size changes only, in order
-Json summarize(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor);
-
-/// How the values of one measure are distributed.
-struct MeasureSample {
-  std::vector<double> values;  ///< of the realizations done, in order of index
-  std::vector<double> noise;   ///< of realization 0 and its replicates, in order; empty without replicates
-  std::int64_t failed = 0;
-  bool complete = false;  ///< every realization of the study has ended
-};
+StudySummary summary_of(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor);
 
 /// The bins to count in: given edges, so many equal bins, or, with neither, those of study.json.
 struct Bins {

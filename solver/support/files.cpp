@@ -11,9 +11,6 @@
 #include <system_error>
 #include <thread>
 
-#include "support/atomic_file.hpp"
-#include "support/error.hpp"
-
 namespace talus {
 namespace {
 
@@ -48,6 +45,11 @@ fs::path directory_of(const fs::path& path) { return path.has_parent_path() ? pa
 void sync_directory(const fs::path& directory) {
   const FileDescriptor fd(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (fd) ::fsync(fd.get());  // the file itself is safe; some file systems cannot sync a directory
+}
+
+/// A network file system lists what is gone, and keeps what another process has open, under another name.
+bool may_pass(const std::error_code& error) {
+  return error == std::errc::directory_not_empty || error == std::errc::device_or_resource_busy;
 }
 
 }  // namespace
@@ -142,24 +144,16 @@ std::uint64_t disk_left(const fs::path& path) {
   return ::statvfs(path.c_str(), &info) == 0 ? std::uint64_t{info.f_bavail} * info.f_frsize : 0;
 }
 
-FileDescriptor try_lock(const fs::path& path, bool inherited) {
+TriedLock try_lock(const fs::path& path, bool inherited) {
   FileDescriptor file(::open(path.c_str(), O_RDWR | O_CREAT | (inherited ? 0 : O_CLOEXEC), 0666));
   if (!file) throw_io_error("create", path, errno);
   for (;;) {
-    if (::flock(file.get(), LOCK_EX | LOCK_NB) == 0) return file;
-    if (errno == EWOULDBLOCK) return FileDescriptor();
+    if (::flock(file.get(), LOCK_EX | LOCK_NB) == 0) return {.file = std::move(file)};
+    if (errno == EWOULDBLOCK) return {.file = FileDescriptor()};
+    if (errno == ENOSYS || errno == EOPNOTSUPP || errno == ENOLCK) return {.file = std::move(file), .supported = false};
     if (errno != EINTR) throw_io_error("lock", path, errno);
   }
 }
-
-namespace {
-
-/// A network file system lists what is gone, and keeps what another process has open, under another name.
-bool may_pass(const std::error_code& error) {
-  return error == std::errc::directory_not_empty || error == std::errc::device_or_resource_busy;
-}
-
-}  // namespace
 
 void remove_directory(const fs::path& path) {
   constexpr std::chrono::seconds patience{60};

@@ -1,17 +1,39 @@
 #pragma once
 // Files as Talus reads and leaves them: of bounded size, and whole or not at all. All functions are thread-safe.
 
+#include <unistd.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "support/error.hpp"
-#include "support/file_descriptor.hpp"
 
 namespace talus {
+
+/// Owns a POSIX file descriptor and closes it when it goes.
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int fd = -1) : fd_(fd) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  ~FileDescriptor() { close(); }
+
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+  /// Closes now; the return value and errno are those of ::close (a network file system may report a full disk here).
+  int close() { return fd_ < 0 ? 0 : ::close(std::exchange(fd_, -1)); }
+
+ private:
+  int fd_;
+};
 
 /// Throws IoError "cannot <doing> <path>: <the system's reason>; <what to do about it>".
 /// @param doing  a verb: "write", "create"
@@ -22,6 +44,30 @@ namespace talus {
 /// directory, fsync, rename, fsync of the directory.
 /// @throws IoError naming the path; an old file is then untouched and the temporary is gone
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
+
+/// The same piece by piece: a new file beside `target`, which takes its name with commit() and is gone otherwise. For
+/// one thread.
+class AtomicFile {
+ public:
+  /// @throws IoError naming the target: it is not a regular file, or its directory cannot be written
+  explicit AtomicFile(const std::filesystem::path& target);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Appends; goes to the disk in blocks. @throws IoError
+  void write(std::string_view content);
+  /// fsync, rename, fsync of the directory. @throws IoError; an old file is then untouched
+  void commit();
+
+ private:
+  void flush();
+
+  std::filesystem::path target_, path_;
+  FileDescriptor file_;
+  std::string buffer_;
+  bool renamed_ = false;
+};
 
 /// The content of a file of at most `max_bytes`.
 /// @throws IoError naming the path: missing, unreadable, a directory, larger than that
@@ -36,18 +82,22 @@ void rename_durably(const std::filesystem::path& from, const std::filesystem::pa
 /// Bytes that may still be written where `path` lies; 0 where that is unknown.
 std::uint64_t disk_left(const std::filesystem::path& path);
 
-/// Takes the advisory lock of a file, which is created if need be. The lock ends with the descriptor, however the
-/// process ends.
+/// What came of asking for an advisory lock.
+struct TriedLock {
+  FileDescriptor file;    ///< the lock ends with it, however the process ends; empty where another process holds it
+  bool supported = true;  ///< false: the file system has no locks; the file is open, and nothing is locked
+};
+/// Asks for the lock of a file, which is created if need be.
 /// @param inherited  child processes hold the lock too
-/// @return an empty descriptor where another process holds the lock
-/// @throws IoError when the file cannot be opened, or the file system has no locks
-FileDescriptor try_lock(const std::filesystem::path& path, bool inherited);
+/// @throws IoError when the file cannot be opened
+TriedLock try_lock(const std::filesystem::path& path, bool inherited);
 
 /// Removes a directory with all in it. NFS may list what other machines put there half a minute late; until then the
 /// directory is not empty, and that is waited for.
 /// @throws IoError
 void remove_directory(const std::filesystem::path& path);
-/// The same at once; what a network file system does not let go yet stays, for who removes the directory around it.
+/// The same without waiting: what a network file system does not release yet stays, and goes with the directory around
+/// it.
 void remove_what_goes(const std::filesystem::path& path);
 
 }  // namespace talus

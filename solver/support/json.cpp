@@ -1,8 +1,6 @@
 #include "support/json.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <optional>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -72,6 +70,12 @@ class Builder : public nlohmann::json_sax<Json> {
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
     const auto* syntax = dynamic_cast<const Json::parse_error*>(&e);
     if (syntax == nullptr) throw ConfigError(pointer(1), "is too large for a number");
+    if (const auto start = text_.find_first_not_of(" \t\r\n"); text_[start] != '{' && text_[start] != '[')
+      throw ConfigError(source_, "is not JSON: it begins with " +
+                                     in_quotes(text_.substr(start, text_.find_first_of("\r\n", start) - start)) +
+                                     "; an object { ... } is expected" +
+                                     (source_.ends_with(".csv") ? ", with this CSV file as the value of a key" : "") +
+                                     not_a_number_hint(text_, syntax->byte));
     throw ConfigError(place(text_, syntax->byte, source_),
                       parser_message(e.what()) + not_a_number_hint(text_, syntax->byte));
   }
@@ -144,14 +148,11 @@ class Builder : public nlohmann::json_sax<Json> {
 std::string read_text(const std::filesystem::path& path, std::size_t most) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (error || !std::filesystem::exists(status)) throw IoError(path.string() + ": cannot be read: no such file");
+  if (!std::filesystem::exists(status)) throw IoError(path.string() + ": cannot be read: no such file");
   if (!std::filesystem::is_regular_file(status)) throw IoError(path.string() + ": cannot be read: not a regular file");
   if (std::filesystem::file_size(path, error) > most && !error)
     throw ConfigError(path.filename().string(), "is larger than " + std::to_string(most >> 20) + " MiB");
-  std::ifstream in(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || in.bad()) throw IoError(path.string() + ": cannot be read");
-  return text;
+  return read_file(path, most);
 }
 
 Json parse_json(std::string_view text, const std::string& source, const JsonLimits& limits) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "support/error.hpp"
+
 namespace talus {
 
 using Json = nlohmann::ordered_json;
@@ -37,5 +39,17 @@ Json parse_json(std::string_view text, const std::string& source, const JsonLimi
 /// Reads and parses a file that Talus wrote.
 /// @throws IoError naming the path: it cannot be read, is larger than `max_bytes`, or is not JSON
 Json read_json(const std::filesystem::path& path, std::size_t max_bytes);
+
+/// The same, and what `read` makes of the document. @param what  that the file should be: "a plan of Talus"
+/// @throws IoError also where `read` misses a key or finds another type
+template <class Read>
+auto read_json(const std::filesystem::path& path, std::size_t max_bytes, const std::string& what, const Read& read) {
+  const Json document = read_json(path, max_bytes);
+  try {
+    return read(document);
+  } catch (const Json::exception& e) {
+    throw IoError(path.string() + " is not " + what + " (" + e.what() + ")");
+  }
+}
 
 }  // namespace talus

@@ -1,10 +1,7 @@
 #include "support/output_directory.hpp"
 
-#include <cerrno>
 #include <system_error>
 
-#include "support/error.hpp"
-#include "support/files.hpp"
 #include "support/json.hpp"
 
 namespace talus {
@@ -40,15 +37,11 @@ void refuse_foreign(const fs::path& directory) {
   }
 }
 
-/// The lock of the directory; an empty descriptor on a file system without locks.
-FileDescriptor lock(const fs::path& directory) try {
-  FileDescriptor file = try_lock(directory / lock_name, false);
+FileDescriptor lock(const fs::path& directory) {
+  FileDescriptor file = try_lock(directory / lock_name, false).file;
   if (file) return file;
   throw IoError("cannot write into " + directory.string() +
                 ": another process of Talus is at work there; wait for it or choose another directory");
-} catch (const IoError& e) {
-  if (e.error == ENOSYS || e.error == EOPNOTSUPP || e.error == ENOLCK) return FileDescriptor();
-  throw;
 }
 
 void remove_temporaries(const fs::path& directory) {
@@ -62,17 +55,15 @@ std::optional<OutputMarker> find_output_marker(const fs::path& directory) {
   const fs::path path = directory / marker_name;
   std::error_code error;
   if (!fs::exists(path, error) && !error) return std::nullopt;
-  try {
-    const Json json = read_json(path, 1 << 16);
-    const auto kind = json.at("kind").get<std::string>();
-    if (kind != "run" && kind != "study")
-      throw IoError(path.string() + ": /kind is \"" + kind + "\", not run or study");
-    return OutputMarker{.kind = kind == "run" ? OutputKind::run : OutputKind::study,
-                        .case_hash = json.at("case_hash").get<std::string>(),
-                        .finished = json.at("finished").get<bool>()};
-  } catch (const nlohmann::json::exception&) {
-    throw IoError(path.string() + " is not a marker of Talus; remove the directory or choose another one");
-  }
+  return read_json(path, 1 << 16, "a marker of Talus; remove the directory or choose another one",
+                   [&](const Json& json) {
+                     const auto kind = json.at("kind").get<std::string>();
+                     if (kind != "run" && kind != "study")
+                       throw IoError(path.string() + ": /kind is \"" + kind + "\", not run or study");
+                     return OutputMarker{.kind = kind == "run" ? OutputKind::run : OutputKind::study,
+                                         .case_hash = json.at("case_hash").get<std::string>(),
+                                         .finished = json.at("finished").get<bool>()};
+                   });
 }
 
 OutputDirectory::OutputDirectory(fs::path path, OutputKind kind, const std::string& case_hash, bool resume)

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "support/file_descriptor.hpp"
+#include "support/files.hpp"
 
 namespace talus {
 
@@ -26,7 +26,7 @@ std::optional<OutputMarker> find_output_marker(const std::filesystem::path& dire
 /// A directory claimed for one run or study, for as long as the object lives.
 ///
 /// It is created (parents too), or was empty, or carries our marker file `talus-output.json`. An advisory lock (flock
-/// on `talus-output.lock`) keeps a second process out; on a file system without locks there is none. The lock ends with
+/// on `talus-output.lock`) keeps a second process out; on a file system without locks nothing does. The lock ends with
 /// the process, however it ends. A caller that starts over (resume = false) replaces what an unfinished run of the same
 /// case left, and removes its checkpoint first.
 class OutputDirectory {
@@ -34,8 +34,7 @@ class OutputDirectory {
   /// @param case_hash  LoadedCase::hash
   /// @param resume     accept a finished directory, and continue an unfinished one
   /// @throws IoError naming the directory: it holds files that are not ours, another kind or another case, a finished
-  /// run without `resume`, is
-  ///         in use by another process, or cannot be created or written
+  /// run without `resume`, is in use by another process, or cannot be created or written
   OutputDirectory(std::filesystem::path path, OutputKind kind, const std::string& case_hash, bool resume);
 
   const std::filesystem::path& path() const { return path_; }

@@ -73,6 +73,13 @@ std::optional<double> to_number(std::string_view text) {
   return whole && std::isfinite(x) ? std::optional(x) : std::nullopt;
 }
 
+std::optional<std::int64_t> to_integer(std::string_view digits) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const bool whole = error == std::errc() && end == digits.data() + digits.size();
+  return whole && value >= 0 && !digits.starts_with('-') ? std::optional(value) : std::nullopt;
+}
+
 std::string in_quotes(std::string_view word) {
   std::string text = "\"";
   return text.append(shorten(word)).append("\"");

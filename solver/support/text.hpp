@@ -30,6 +30,7 @@ std::string in_quotes(std::string_view word);
 
 /// The shortest decimal that reads back as `x`, whatever the locale: "0.1", "1e+09".
 std::string to_text(double x);
+inline std::string to_text(std::int64_t x) { return std::to_string(x); }
 
 /// Three significant digits: "0.333".
 std::string rounded(double x);
@@ -37,5 +38,7 @@ std::string rounded(double x);
 /// The number that the whole of `text` spells, with an optional sign: "+0.5", "-1e3"; nothing where it is not one, or
 /// not finite.
 std::optional<double> to_number(std::string_view text);
+/// The whole number >= 0 that the whole of `digits` spells; nothing where it is not one, or too large.
+std::optional<std::int64_t> to_integer(std::string_view digits);
 
 }  // namespace talus

@@ -8,10 +8,10 @@ import re
 import sys
 
 # A module may include itself and what stands before it.
-ORDER = ["math", "material", "random_field", "particles", "neighbours", "sph", "integrate", "simulation", "monte_carlo", "case", "io", "run", "figures", "cli"]
+ORDER = ["math", "material", "random_field", "particles", "neighbours", "sph", "integrate", "simulation", "case", "io", "run", "figures", "cli"]
 MAY = {module: set(ORDER[:k + 1]) for k, module in enumerate(ORDER)}
 for module in ("particles", "neighbours", "sph", "integrate", "simulation", "material"):
-    MAY[module].discard("random_field")  # joins at monte_carlo
+    MAY[module].discard("random_field")  # joins at case, where it is declared, and at run
 MAY["random_field"] = {"math", "random_field"}
 MAY["executor"] = {"executor"}  # apart: talusd uses it too, and it knows nothing of the solver
 MAY["cli"].add("executor")

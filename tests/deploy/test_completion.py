@@ -77,6 +77,16 @@ class Completion(unittest.TestCase):
         self.assertEqual(complete(TALUS, "stats", "--quantity", "inf"), ["influence_zone_m"])
         self.assertEqual(complete(TALUS, "study", "--seed", ""), [])
 
+    def test_jobs_of_the_server(self):
+        with tempfile.TemporaryDirectory() as here:
+            program = pathlib.Path(here) / "talus"  # a server with two jobs
+            program.write_text('#!/bin/sh\n[ "$1" = status ] && printf "%s  running  50 %%  \\n" 0a1b 0a2c\n')
+            program.chmod(0o755)
+            for verb in ("status", "watch", "results", "cancel"):
+                self.assertEqual(complete(str(program), verb, "0a"), ["0a1b", "0a2c"], verb)
+                self.assertEqual(complete(str(program), verb, "0a2"), ["0a2c"], verb)
+        self.assertEqual(complete(TALUS, "watch", ""), [])  # no server answers
+
     def test_keys_of_a_case_and_their_choices(self):
         document = json.loads((CASES / "illustrative.json").read_text())
         keys = complete(TALUS, "run", "x.json", "--set", "")

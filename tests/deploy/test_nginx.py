@@ -188,7 +188,7 @@ class Nginx(daemon.ServiceTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         done = run(daemon.TALUS, "results", done.stdout.strip(), env=environment)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("influence zone", done.stdout)
+        self.assertIn("run-out distance", done.stdout)
         del environment["SSL_CERT_FILE"]
         self.assertEqual(run(daemon.TALUS, "status", env=environment).returncode, 5)  # a certificate nobody vouches for
 

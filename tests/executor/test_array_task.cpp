@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "executor/array_task.hpp"
+#include "executor/slurm_batch.hpp"
 #include "files.hpp"
 
 using namespace talus::executor;

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "executor/local.hpp"
+#include "executor/executor.hpp"
 #include "files.hpp"
 
 using namespace talus::executor;
@@ -23,7 +23,7 @@ Run shell(const TemporaryDirectory& directory, const std::string& name, const st
           .log = directory / (name + ".log")};
 }
 
-Ended next(LocalExecutor& executor) {
+Ended next(Executor& executor) {
   while (true) {
     const std::vector<Ended> all = executor.poll();
     if (!all.empty()) return all.front();
@@ -35,7 +35,8 @@ Ended next(LocalExecutor& executor) {
 
 TEST(LocalExecutor, HasAsManyPlacesAsItWasGiven) {
   const TemporaryDirectory directory;
-  LocalExecutor executor(2);
+  const auto local = make_local_executor(2);
+  Executor& executor = *local;
   EXPECT_TRUE(executor.has_room());
   const RunId first = executor.start(shell(directory, "a", "exit 3"));
   const RunId second = executor.start(shell(directory, "b", "sleep 100"));
@@ -52,7 +53,8 @@ TEST(LocalExecutor, HasAsManyPlacesAsItWasGiven) {
 
 TEST(LocalExecutor, ResumesWhereThereIsACheckpointAndStartsAfreshWhereThereIsNone) {
   const TemporaryDirectory directory;
-  LocalExecutor executor(1);
+  const auto local = make_local_executor(1);
+  Executor& executor = *local;
   const talus::executor::Run run = shell(directory, "a", "echo $# $1");
   write(run.directory / "left", "over");
   executor.start(run);
@@ -68,7 +70,8 @@ TEST(LocalExecutor, ResumesWhereThereIsACheckpointAndStartsAfreshWhereThereIsNon
 
 TEST(LocalExecutor, EndsWhatTakesTooLongAndAsksAllToStop) {
   const TemporaryDirectory directory;
-  LocalExecutor executor(2);
+  const auto local = make_local_executor(2);
+  Executor& executor = *local;
   talus::executor::Run slow = shell(directory, "a", "sleep 100");
   slow.command.limits.wall_seconds = 1;
   executor.start(slow);

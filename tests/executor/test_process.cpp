@@ -60,12 +60,12 @@ TEST(Process, WhatCannotBeStartedIsNamed) {
   try {
     Process({.arguments = {"/no/such/program"}}, log, log);
     FAIL();
-  } catch (const ProcessError& e) {
+  } catch (const talus::IoError& e) {
     EXPECT_NE(std::string(e.what()).find("/no/such/program"), std::string::npos);
     EXPECT_EQ(e.error, ENOENT);
   }
   const auto nowhere = directory.path() / "missing" / "log";
-  EXPECT_THROW(Process({.arguments = {"/bin/true"}}, nowhere, nowhere), ProcessError);
+  EXPECT_THROW(Process({.arguments = {"/bin/true"}}, nowhere, nowhere), talus::IoError);
 }
 
 TEST(Process, HasOnlyTheEnvironmentAndTheLimitsGiven) {

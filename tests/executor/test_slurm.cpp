@@ -173,7 +173,7 @@ TEST_F(Slurm, RefusedItTriesAgainAndAtLastSaysSo) {
   try {
     until([] { return false; });
     FAIL();
-  } catch (const ProcessError& e) {
+  } catch (const talus::IoError& e) {
     EXPECT_NE(std::string(e.what()).find("no such partition"), std::string::npos);
   }
   fs::remove(fake / "refuse");

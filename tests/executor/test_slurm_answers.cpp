@@ -20,7 +20,7 @@ std::string queue(const std::string& jobs) { return R"({"meta": {}, "errors": []
 std::string what_fails(const std::string& json) {
   try {
     SlurmQueue{json};
-  } catch (const SlurmAnswerError& e) {
+  } catch (const talus::IoError& e) {
     return e.what();
   }
   return "";
@@ -113,7 +113,7 @@ TEST(SlurmAnswer, TheNumberOfTheJob) {
   EXPECT_EQ(parse_job_id("123\n"), 123);
   EXPECT_EQ(parse_job_id("123;north\n"), 123);
   for (const char* bad : {"", "\n", "0", "-4", "Submitted batch job 7", "99999999999999999999", "12 13"})
-    EXPECT_THROW(parse_job_id(bad), SlurmAnswerError) << bad;
+    EXPECT_THROW(parse_job_id(bad), talus::IoError) << bad;
 }
 
 TEST(SlurmConfig, EveryFaultAtOnce) {
@@ -197,14 +197,14 @@ TEST(Batch, DamagedFilesAreNamed) {
     std::string bad = good;
     bad.replace(bad.find(from), from.size(), to);
     write(directory / "0-0.status", bad);
-    const std::string said = message<BatchError>([&] { batch.status({0, 0}); });
+    const std::string said = message<talus::IoError>([&] { batch.status({0, 0}); });
     EXPECT_NE(said.find("0-0.status"), std::string::npos) << bad;
   }
   for (const char* name : {"x-0.status", "0.status", "0-.status", "-1-0.status", "0-0.status.tmp-12", "0-0.json"})
     write(directory / name, good);
   EXPECT_EQ(batch.statuses().size(), 1u);
   write(directory / "3.json", R"({"runs": [{"name": "a"}]})");
-  EXPECT_NE(message<BatchError>([&] { batch.runs(3); }).find("3.json"), std::string::npos);
+  EXPECT_NE(message<talus::IoError>([&] { batch.runs(3); }).find("3.json"), std::string::npos);
   EXPECT_TRUE(BatchDirectory(directory / "none").statuses().empty());
   write(directory / "job", "7x");
   EXPECT_FALSE(batch.job());

@@ -169,7 +169,7 @@ class Verbs(ServiceTest):
         self.assertEqual(
             json.loads((self.dir / "results.json").read_text())["summary"]["value"]["provenance"]["seed"], 3
         )
-        self.assertIn("influence zone", self.talus("results", job).stdout)
+        self.assertIn("run-out distance", self.talus("results", job).stdout)
         self.assertIn("dismissed", self.talus("cancel", job).stdout)
         self.talus("watch", job, code=6)
         self.talus("results", job, code=5)

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "queue/store.hpp"
-#include "study/csv.hpp"
 #include "study/estimator.hpp"
 #include "study/publish.hpp"
 #include "temporary_directory.hpp"

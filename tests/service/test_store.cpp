@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "queue/store.hpp"
-#include "study/csv.hpp"
+#include "study/publish.hpp"
 #include "support/measures.hpp"
 #include "temporary_directory.hpp"
 

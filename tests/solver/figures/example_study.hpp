@@ -6,9 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "study/csv.hpp"
-#include "study/summary.hpp"
-#include "support/files.hpp"
+#include "study/publish.hpp"
 
 namespace talus::test {
 
@@ -42,11 +40,10 @@ inline Plan example_plan(int planned, const std::string& title = "Example") {
   return plan;
 }
 
-/// Writes study.json and realizations.csv.
+/// Writes the tables and study.json.
 inline void write_example_study(const std::filesystem::path& directory, const Plan& plan,
                                 const std::vector<Record>& runs, const std::vector<Record>& floor) {
-  write_file_atomically(directory / "study.json", summarize(plan, runs, floor).dump(2));
-  write_file_atomically(directory / "realizations.csv", to_csv(runs, "index"));
+  write_tables({directory}, plan, runs, floor);
 }
 
 /// Replicates of realization 0 of the example that differ by centimetres.

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "case/load.hpp"
-#include "monte_carlo/realization.hpp"
+#include "run/realization.hpp"
 #include "simulation/simulation.hpp"
 #include "sph/pair_loops.hpp"
 

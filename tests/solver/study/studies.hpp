@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "study/plan.hpp"
-#include "study/record.hpp"
+#include "study/summary.hpp"
 #include "temporary_directory.hpp"
 
 namespace talus::fixtures {
@@ -47,5 +46,9 @@ inline Record done(std::int64_t index, double zone) {
 }
 
 inline Record failed(std::int64_t index, const std::string& reason) { return {.index = index, .reason = reason}; }
+
+inline Json summarize(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor) {
+  return summary_of(plan, runs, floor).json();
+}
 
 }  // namespace talus::fixtures

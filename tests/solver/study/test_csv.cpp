@@ -2,13 +2,20 @@
 #include <limits>
 
 #include "studies.hpp"
-#include "study/csv.hpp"
+#include "study/publish.hpp"
 #include "support/error.hpp"
 
 using namespace talus;
 using namespace talus::fixtures;
 
 namespace {
+
+/// The table that a study of these records writes.
+std::string table_of(const std::vector<Record>& records) {
+  const TemporaryDirectory directory;
+  write_tables({directory.path()}, plan(2000000), records, {});
+  return content(directory / "realizations.csv");
+}
 
 /// The message with which reading `text` is refused.
 std::string refusal(const std::string& text) {
@@ -33,7 +40,7 @@ const std::string head =
 TEST(Csv, OneLineForEachRecord) {
   Record r = done(3, 34.5);
   r.measures.centre_of_mass_x = 0.1 + 0.2;  // 17 digits
-  EXPECT_EQ(to_csv({r, failed(7, "diverged: at step 12, \"fast\"\nreally")}, "index"),
+  EXPECT_EQ(table_of({r, failed(7, "diverged: at step 12, \"fast\"\nreally")}),
             head +
                 "3,done,34.5,34.2,33.8,34.1,0.30000000000000004,24.7,0.25,1003,1.5,0000000000000013,\n"
                 "7,failed,,,,,,,,,,,\"diverged: at step 12, \"\"fast\"\" really\"\n");
@@ -44,8 +51,8 @@ TEST(Csv, ReadsBackExactly) {
   const auto path = directory / "t.csv";
   Record r = done(3, 100.0 / 3.0);
   r.wall_clock = 1e-300;
-  write(path, to_csv({r, failed(7, "a, \"b\"; c"), done(1000000, -0.125)}, "replicate"));
-  const std::vector<Record> back = read_csv(path, "replicate");
+  write(path, table_of({r, failed(7, "a, \"b\"; c"), done(1000000, -0.125)}));
+  const std::vector<Record> back = read_csv(path, "index");
   ASSERT_EQ(back.size(), 3u);
   EXPECT_TRUE(back[0].done);
   EXPECT_EQ(back[0].measures.influence_zone, 100.0 / 3.0);
@@ -59,14 +66,14 @@ TEST(Csv, ReadsBackExactly) {
   EXPECT_EQ(back[1].index, 7);
   EXPECT_EQ(back[1].reason, "a, \"b\"; c");
   EXPECT_EQ(back[2].index, 1000000);
-  EXPECT_EQ(to_csv(back, "replicate"), content(path));
+  EXPECT_EQ(table_of(back), content(path));
 }
 
 TEST(Csv, AMeasureWithoutAValueIsAnEmptyCell) {  // of a run that was recorded before the measure existed
   const TemporaryDirectory directory;
   Record r = done(3, 34.5);
   r.measures.front_mass_999 = std::numeric_limits<double>::quiet_NaN();
-  write(directory / "t.csv", to_csv({r}, "index"));
+  write(directory / "t.csv", table_of({r}));
   EXPECT_EQ(content(directory / "t.csv").find("nan"), std::string::npos);
   const std::vector<Record> back = read_csv(directory / "t.csv", "index");
   EXPECT_TRUE(std::isnan(back.at(0).measures.front_mass_999));
@@ -80,7 +87,7 @@ TEST(Csv, AcceptsLineEndsOfOtherSystems) {
 }
 
 TEST(Csv, NamesFileLineAndFault) {
-  const std::string good = to_csv({done(3, 34.5)}, "index");
+  const std::string good = table_of({done(3, 34.5)});
   EXPECT_NE(refusal("").find("t.csv is empty"), std::string::npos);
   EXPECT_NE(refusal("a,b\n").find("t.csv:1 is not the header"), std::string::npos);
   EXPECT_NE(refusal(good + "4,done,1\n").find("t.csv:3 has 3 fields instead of 13"), std::string::npos);

@@ -1,11 +1,11 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <span>
 
 #include "statistics/sample.hpp"
 #include "studies.hpp"
 #include "study/estimator.hpp"
-#include "study/stop_rule.hpp"
 
 using namespace talus;
 using namespace talus::fixtures;
@@ -27,6 +27,19 @@ std::vector<Record> records(std::int64_t n) {
   return all;
 }
 
+/// The size at which the rule stops the study of these records, if it does.
+std::optional<std::int64_t> stopping_size(const Plan& plan, const std::vector<Record>& records) {
+  StopRule rule(plan.study.stop_half_width);
+  for (const Record& r : records) rule.add(r.index, r.influence_zone());
+  return rule.size();
+}
+
+/// Half the width of the 95 % interval of the mean.
+double half_width(std::span<const double> sample) {
+  const Interval ci = moments(sample).mean_ci95.value();
+  return 0.5 * (*ci.hi - *ci.lo);
+}
+
 }  // namespace
 
 TEST(StopRule, StopsAtTheFirstPrefixWhoseIntervalIsNarrow) {
@@ -37,7 +50,7 @@ TEST(StopRule, StopsAtTheFirstPrefixWhoseIntervalIsNarrow) {
   std::vector<double> zones;
   for (std::size_t i = 0; i < all.size() && expected == 0; ++i) {
     if (all[i].done) zones.push_back(all[i].measures.influence_zone);
-    if (zones.size() >= 10 && *mean_half_width(moments(zones)) <= 0.2) expected = static_cast<std::int64_t>(i) + 1;
+    if (zones.size() >= 10 && half_width(zones) <= 0.2) expected = static_cast<std::int64_t>(i) + 1;
   }
   EXPECT_EQ(n, expected);
   EXPECT_GT(n, 20);
@@ -66,7 +79,6 @@ TEST(Estimator, OrdersTheRunsOfAStudy) {
   const std::vector<RunKey> order{realization(0), replicate(1), replicate(2), realization(1), realization(2)};
   for (std::int64_t rank = 0; rank < std::ssize(order); ++rank) {
     EXPECT_EQ(run_of_rank(rank, 2), order[static_cast<std::size_t>(rank)]) << rank;
-    EXPECT_EQ(rank_of(run_of_rank(rank, 2), 2), rank);
   }
   EXPECT_EQ(run_of_rank(1, 0), realization(1));
 }
@@ -111,7 +123,7 @@ TEST(Estimator, KnowsTheFarthestAndTheMean) {
   EXPECT_TRUE(estimator.is_farthest(7, 7.5));
   EXPECT_DOUBLE_EQ(*estimator.mean(), 4.0);
   const double sample[] = {3.0, 7.0, 2.0};
-  EXPECT_NEAR(*estimator.mean_half_width(), *mean_half_width(moments(sample)), 1e-12);
+  EXPECT_NEAR(*estimator.mean_half_width(), half_width(sample), 1e-12);
 }
 
 TEST(Estimator, StopsEarlyInWhateverOrderTheRealizationsEnd) {

@@ -119,11 +119,12 @@ TEST(Merge, WritesAStudyThatCanBeMergedAgainButNotRun) {
   EXPECT_FALSE(fs::exists(d / "foreign" / "study.json"));
 }
 
-TEST(Counted, EndsWhereTheStudyStopped) {
+TEST(Tables, EndWhereTheStudyStopped) {
+  const TemporaryDirectory d;
   Plan p = plan(100);
   std::vector<Record> runs;
   for (int i = 0; i < 14; ++i) runs.push_back(done(i, 34.0));
-  EXPECT_EQ(counted(p, runs).size(), 14u);
+  EXPECT_EQ(read_tables(study(d / "all", p, runs)).runs.size(), 14u);
   p.study.stop_half_width = 1.0;
-  EXPECT_EQ(counted(p, runs).size(), 10u);
+  EXPECT_EQ(read_tables(study(d / "stopped", p, runs)).runs.size(), 10u);
 }

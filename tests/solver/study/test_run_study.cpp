@@ -1,7 +1,10 @@
 // The study against a stand-in for `talus run` (fake_run.cpp) that keeps a diary of what was asked of it.
 
 #include <signal.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <map>
 #include <sstream>
@@ -9,12 +12,24 @@
 
 #include "executor/process.hpp"
 #include "studies.hpp"
-#include "study/csv.hpp"
+#include "study/publish.hpp"
 #include "study/run_study.hpp"
 #include "support/error.hpp"
 
 using namespace talus;
 using namespace talus::fixtures;
+
+namespace {
+
+bool no_locks = false;  ///< as on a file system that has none
+
+}  // namespace
+
+extern "C" int flock(int file, int operation) {
+  if (!no_locks) return static_cast<int>(::syscall(SYS_flock, file, operation));
+  errno = ENOLCK;
+  return -1;
+}
 
 namespace {
 
@@ -349,6 +364,18 @@ TEST(RunStudy, AdoptsWhatItsOrphansFinish) {
   kill_and_finish(s, 6);
   EXPECT_EQ(s.count("begin "), 14);  // workers outlived the study, and nothing at all was started twice
   EXPECT_NE(s.text_of_notes().find("taken over"), std::string::npos);
+}
+
+TEST(RunStudy, GoesOnWhereTheFileSystemHasNoLocks) {
+  Study s(5), whole(5);
+  no_locks = true;
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  no_locks = false;
+  EXPECT_NE(s.text_of_notes().find("has no locks: do not start a second study in " + s.out.string()), std::string::npos)
+      << s.text_of_notes();
+  whole.run();
+  EXPECT_EQ(content(s.out / "study.json"), content(whole.out / "study.json"));
+  EXPECT_EQ(whole.text_of_notes(), "");
 }
 
 TEST(RunStudy, ADamagedResultIsRunAgain) {

@@ -33,6 +33,17 @@ TEST(ParseJson, NamesLineAndColumnOfASyntaxError) {
   EXPECT_TRUE(complaint("{\"a\": \"\xff\"}").starts_with("c.json:1:"));
 }
 
+TEST(ParseJson, SaysWhatATextIsNot) {
+  EXPECT_EQ(complaint(" x,y\n0,1\n"), "c.json: is not JSON: it begins with \"x,y\"; an object { ... } is expected");
+  EXPECT_EQ(complaint("0,1\n"), "c.json: is not JSON: it begins with \"0,1\"; an object { ... } is expected");
+  try {
+    parse_json("x,y\n0,1\n", "bed.csv");
+    FAIL();
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("with this CSV file as the value of a key"), std::string::npos) << e.what();
+  }
+}
+
 TEST(ParseJson, RefusesWhatJsonDoesNotHave) {
   EXPECT_NE(complaint("{\"a\": NaN}").find("every number must be finite"), std::string::npos);
   EXPECT_NE(complaint("{\"a\": -Infinity}").find("every number must be finite"), std::string::npos);

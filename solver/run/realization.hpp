@@ -8,7 +8,7 @@
 #include "random_field/field_spec.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/run_result.hpp"
-#include "study/spec.hpp"
+#include "study/plan.hpp"
 
 namespace talus {
 

@@ -1,14 +1,16 @@
-#include "study/progress.hpp"
+#include "cli/progress.hpp"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 
-namespace talus {
-namespace {
+#include "support/measures.hpp"
 
-using nlohmann::ordered_json;
+namespace talus::cli {
+namespace {
 
 template <class... T>
 std::string format(const char* pattern, T... values) {
@@ -25,23 +27,23 @@ std::string duration(double seconds) {
   return format("%.1f days", seconds / 86400.0);
 }
 
-std::string number(const ordered_json& value, const char* pattern = "%.3f") {
+std::string number(const Json& value, const char* pattern = "%.3f") {
   return value.is_null() ? "-" : format(pattern, value.get<double>());
 }
 
-std::string interval(const ordered_json& ends) {
+std::string interval(const Json& ends) {
   return ends.is_null() ? "-"
                         : std::string("[").append(number(ends[0])).append(", ").append(number(ends[1])).append("]");
 }
 
-const ordered_json* quantile(const ordered_json& quantity, double p) {
-  for (const ordered_json& q : quantity.at("quantiles"))
+const Json* quantile(const Json& quantity, double p) {
+  for (const Json& q : quantity.at("quantiles"))
     if (q.at("p") == p) return &q;
   return nullptr;
 }
 
 /// "0-3, 7, ..." of ranges with both ends included.
-std::string ranges(const ordered_json& all) {
+std::string ranges(const Json& all) {
   constexpr std::size_t most = 8;
   std::string text;
   for (std::size_t i = 0; i < std::min(most, all.size()); ++i) {
@@ -60,58 +62,66 @@ std::optional<double> time_left(const Progress& p) {
 }
 
 std::string progress_line(const Progress& p) {
-  std::string text = std::to_string(p.done) + "/" + std::to_string(p.planned) + " done, " + std::to_string(p.failed) +
-                     " failed, " + std::to_string(p.running) + " running";
-  if (!p.pending_reason.empty()) text += ", " + p.pending_reason;
-  if (p.made_now > 0 && p.elapsed > 0.0)
-    text += format(", %.3g/h", 3600.0 * static_cast<double>(p.made_now) / p.elapsed);
-  if (const auto left = time_left(p)) text += ", " + duration(*left) + " left";
-  if (p.mean) text += format(", mean %.2f", *p.mean);
+  std::string text =
+      std::to_string(p.done) + "/" + std::to_string(p.planned) + " done, " + std::to_string(p.failed) + " failed";
+  if (p.mean) text += format(", mean run-out %.2f", *p.mean);
   if (p.mean_half_width) text += format(" +/- %.2f", *p.mean_half_width);
-  return text + (p.mean ? " m" : "");
+  if (p.mean) text += " m";
+  if (const auto left = time_left(p)) text += ", " + duration(*left) + " left";
+  text += ", " + std::to_string(p.running) + " running";
+  if (!p.pending_reason.empty()) text += ", " + p.pending_reason;
+  if (p.made_now == 0 || p.elapsed <= 0.0) return text;
+  const double rate = 3600.0 * static_cast<double>(p.made_now) / p.elapsed;
+  return text + format(rate < 10.0 ? ", %.2g/h" : ", %.0f/h", rate);
 }
 
+/// The bar takes what the line leaves, and no less than 8 columns.
 std::string progress_bar(const Progress& p, int width) {
-  const int cells = std::clamp(width / 4, 8, 30);
+  const std::string line = progress_line(p);
+  const int cells = std::clamp(width - static_cast<int>(line.size()) - 3, 8, 30);
   const double share = p.planned > 0 ? static_cast<double>(p.done + p.failed) / static_cast<double>(p.planned) : 1.0;
-  const int full = std::clamp(static_cast<int>(std::floor(share * cells)), 0, cells);
-  std::string text(static_cast<std::size_t>(cells) + 2, '.');
-  std::fill_n(text.begin() + 1, full, '#');
-  text.front() = '[';
-  text.back() = ']';
-  text.append(" ").append(progress_line(p));
-  if (static_cast<int>(text.size()) > width) text.resize(static_cast<std::size_t>(std::max(width, 0)));
-  return text;
+  const auto full = static_cast<std::size_t>(std::clamp(static_cast<int>(std::floor(share * cells)), 0, cells));
+  const std::string bar = std::string(full, '#') + std::string(static_cast<std::size_t>(cells) - full, '.');
+  return ("[" + bar + "] " + line).substr(0, static_cast<std::size_t>(std::max(width, 0)));
 }
 
-std::string summary_table(const ordered_json& study) {
-  const ordered_json& n = study.at("realizations");
+int terminal_width() {
+  winsize size{};
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+std::string study_report(const Json& study) {
+  return summary_table(study) + "\nrun-out distance [m] (influence_zone_m)\n" +
+         text_histogram(study.at("quantities").at(measure_table[0].key), 80);
+}
+
+std::string summary_table(const Json& study) {
+  const Json& n = study.at("realizations");
   std::string text = study.at("title").get<std::string>() + "\n";
   text += format("%lld realizations planned, %lld done, %lld failed", n.at("planned").get<long long>(),
                  n.at("done").get<long long>(), n.at("failed").get<long long>());
   if (n.at("stopped_early").get<bool>()) text += "; stopped early, the mean is known well enough";
-  if (!n.at("complete").get<bool>()) text += "; not made yet: " + ranges(n.at("missing"));
+  if (!n.at("complete").get<bool>()) text += "; not run yet: " + ranges(n.at("missing"));
   text += "\nseed " + study.at("provenance").at("seed").dump() + ", captured variance " +
           number(study.at("captured_variance"));
-  const ordered_json& phi = study.at("mean_friction_angle_deg");
+  const Json& phi = study.at("mean_friction_angle_deg");
   text += ", mean friction angle " + number(phi.at("mean"), "%.2f") + " deg, stdev " + number(phi.at("stdev"), "%.2f") +
           " deg\n\n";
   text += format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", "", "mean", "95 % interval", "stdev", "95 % interval",
                  "floor", "median", "q95");
   for (const auto& [key, q] : study.at("quantities").items()) {
-    const ordered_json* median = quantile(q, 0.5);
-    const ordered_json* high = quantile(q, 0.95);
+    const Json* median = quantile(q, 0.5);
+    const Json* high = quantile(q, 0.95);
     text += format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", key.c_str(), number(q.at("mean")).c_str(),
                    interval(q.at("mean_ci95")).c_str(), number(q.at("stdev")).c_str(),
                    interval(q.at("stdev_ci95")).c_str(), number(q.at("noise_floor_stdev")).c_str(),
                    median ? number(median->at("value")).c_str() : "-", high ? number(high->at("value")).c_str() : "-");
   }
-  return text +
-         "floor: standard deviation of runs that differ by rounding-size changes only; a stdev near it is numerics\n";
+  return text + "floor: standard deviation of the numerical noise; a stdev near it says nothing about the soil\n";
 }
 
-std::string text_histogram(const ordered_json& quantity, int width) {
-  const ordered_json& h = quantity.at("histogram");
+std::string text_histogram(const Json& quantity, int width) {
+  const Json& h = quantity.at("histogram");
   const auto counts = h.at("counts").get<std::vector<std::int64_t>>();
   const auto edges = h.at("edges").get<std::vector<double>>();
   if (counts.empty()) return {};
@@ -131,4 +141,4 @@ std::string text_histogram(const ordered_json& quantity, int width) {
   return text;
 }
 
-}  // namespace talus
+}  // namespace talus::cli

@@ -1,4 +1,4 @@
-#include "monte_carlo/realization.hpp"
+#include "run/realization.hpp"
 
 #include <cmath>
 #include <cstdint>
