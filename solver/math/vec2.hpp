@@ -28,6 +28,8 @@ constexpr double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
 constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 constexpr double norm2(Vec2 a) { return dot(a, a); }
 inline double norm(Vec2 a) { return std::sqrt(norm2(a)); }
+/// Unit normal of a direction, on its left.
+inline Vec2 left_normal(Vec2 along) { return (1.0 / norm(along)) * Vec2{-along.y, along.x}; }
 
 /// An axis-aligned rectangle [lo.x, hi.x] x [lo.y, hi.y].
 struct Box {

@@ -24,9 +24,6 @@ Polygon to_polygon(std::span<const Vec2> outline) {
   return polygon;
 }
 
-/// Unit normal of a direction, on its left.
-Vec2 left_normal(Vec2 along) { return (1.0 / norm(along)) * Vec2{-along.y, along.x}; }
-
 /// Heights at which the vertical through x crosses the outline, increasing. A vertex belongs to the edge on its right.
 std::vector<double> crossings(std::span<const Vec2> outline, double x) {
   std::vector<double> heights;

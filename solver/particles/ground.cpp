@@ -23,8 +23,6 @@ constexpr double noise_deviations = 4.0;     ///< one of 16,000 vertices lies fa
 constexpr double shallowest_notch = 0.25;    ///< of the spacing: what a particle cannot enter deeper is left open [-]
 constexpr std::size_t enough_vertices = 16;  ///< to tell the noise from
 
-Vec2 left_normal(Vec2 along) { return (1.0 / norm(along)) * Vec2{-along.y, along.x}; }
-
 /// Indices of the vertices that Douglas and Peucker's method keeps, the first and the last among them.
 std::vector<std::size_t> kept_vertices(std::span<const Vec2> path, double tolerance) {
   std::vector<std::size_t> kept = {0, path.size() - 1};
@@ -101,8 +99,8 @@ std::vector<double> least_squares_shift(std::span<const Vec2> path, const std::v
 }
 
 using Point = bg::model::d2::point_xy<double>;
-using Polygon = bg::model::polygon<Point, false>;  // counter-clockwise, as the soil walks
-using Region = bg::model::multi_polygon<Polygon>;
+using Room = bg::model::polygon<Point, false>;  // counter-clockwise, as the soil walks
+using Region = bg::model::multi_polygon<Room>;
 
 Region grown(const Region& region, double distance) {
   constexpr std::size_t points_per_circle = 48;
@@ -114,15 +112,15 @@ Region grown(const Region& region, double distance) {
 }
 
 /// The largest part of what a disc of radius r that stays within the region covers.
-Polygon opened(const Polygon& region, double r) {
+Room opened(const Room& region, double r) {
   const Region open = grown(grown({region}, -r), r);
-  const auto largest = std::ranges::max_element(open, {}, [](const Polygon& part) { return bg::area(part); });
+  const auto largest = std::ranges::max_element(open, {}, [](const Room& part) { return bg::area(part); });
   return largest == open.end() ? region : *largest;
 }
 
 /// The room above an open line, or inside a ring: the line's vertices first.
-Polygon room_of(const Polyline& line, double margin) {
-  Polygon room;
+Room room_of(const Polyline& line, double margin) {
+  Room room;
   double top = -std::numeric_limits<double>::infinity();
   for (const Vec2& v : line.vertices) {
     bg::append(room.outer(), Point(v.x, v.y));
@@ -178,7 +176,7 @@ Polyline without_narrow_notches(const Polyline& line, double dx) {
   const Ground ground({line});
   bool narrow = false;
   for (std::size_t k = 0; k < line.vertices.size() && !narrow; ++k) narrow = !disc_reaches(line, ground, k, r);
-  const Polygon room = room_of(line, 8.0 * dx);
+  const Room room = room_of(line, 8.0 * dx);
   if (!narrow || !bg::is_valid(room)) return line;
   const std::vector<Point> ring = opened(room, r).outer();
   const Vec2 start = line.closed ? Vec2{ring[0].x(), ring[0].y()} : line.vertices.front();
