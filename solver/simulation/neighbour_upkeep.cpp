@@ -59,7 +59,7 @@ void NeighbourUpkeep::sort(Soil& soil, Flow& flow) {
 }
 
 /// A larger skin makes the lists longer, a smaller one makes rebuilds more frequent; the optimum grows as the root of
-/// the displacement per step. Measured: see solver/sph/README.md.
+/// the displacement per step. Measured: see solver/sph/SPEED.md.
 void NeighbourUpkeep::rebuild_lists(const Soil& soil, const WallParticles& walls, Flow& flow, double displacement) {
   const double widest = flow.resort_distance() * h_;
   const double best = std::clamp(0.4 * std::sqrt(dx_ * displacement), 0.005 * h_, widest);
