@@ -26,8 +26,7 @@ using namespace talus::cli;
 /// Starts the program over, once, with the settings that its libraries read before main() and that nobody has chosen
 /// yet; returns if there is nothing to set, or if the system does not let it.
 /// - GOMP_SPINCOUNT: threads of GNU OpenMP wait for each other actively for milliseconds by default. That is right on
-/// an
-///   idle machine; beside other programs a run on all cores became thirty times slower.
+///   an idle machine; beside other programs a run on all cores became thirty times slower.
 /// - GLIBC_TUNABLES: large pages for large arrays.
 void settle_runtime(char** argv) {
   const bool spins = std::getenv("GOMP_SPINCOUNT") == nullptr && std::getenv("OMP_WAIT_POLICY") == nullptr;
