@@ -163,6 +163,8 @@ class Studies(StudyTest):
         self.assertIn("lost by Slurm (CANCELLED), 5 times", failed[0]["reason"])
 
     def test_the_controller_is_away(self):
+        # Two tasks of a run or two at a time: without the controller the study cannot come to its end.
+        self.configure(array_tasks=2, task_s=1)
         self.start()
         self.begun()
         self.cluster.stop_controller()
