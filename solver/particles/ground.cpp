@@ -153,10 +153,12 @@ std::vector<Vec2> stretch_of(const std::vector<Point>& ring, Vec2 first, Vec2 la
   return path;
 }
 
-/// Whether a disc of radius r on the soil's side comes nearer to vertex k than 1/2 r.
+/// Whether a disc of radius r = dx/2 on the soil's side comes nearer to vertex k than shallowest_notch dx.
 bool disc_reaches(const Polyline& line, const Ground& ground, std::size_t k, double r) {
   const Vec2 v = line.vertices[k];
-  const auto free = [&](Vec2 direction) { return ground.nearest(v + 1.5 * r * direction).distance >= 0.9999 * r; };
+  const auto free = [&](Vec2 direction) {
+    return ground.nearest(v + (1.0 + 2.0 * shallowest_notch) * r * direction).distance >= 0.9999 * r;
+  };
   const std::size_t n = line.vertices.size();
   if (!line.closed && (k == 0 || k + 1 == n)) return true;
   const Vec2 bisector = left_normal(v - line.vertices[(k + n - 1) % n]) + left_normal(line.vertices[(k + 1) % n] - v);
@@ -224,6 +226,7 @@ FittedLine fit_line(const Polyline& line, double dx) {
   fitted.line = without_narrow_notches(fitted.line, dx);
   return fitted;
 }
+
 struct Ground::Segments {
   struct Piece {
     std::uint32_t line, segment;
