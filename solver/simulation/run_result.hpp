@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <string>
 
+#include "simulation/energy_budget.hpp"
 #include "support/measures.hpp"
+#include "support/quality.hpp"
 
 namespace talus {
 
@@ -38,6 +40,8 @@ struct RunResult {
   std::string backend = "plain";  ///< the loops that ran: "vectorised" or "plain"; empty: not recorded
   std::string simd = "none";      ///< instruction set of the vectorised loops, otherwise "none"; empty: not recorded
   FieldSummary field;
+  EnergyBudget energy;  ///< at the end
+  Quality quality;
 };
 
 /// A line of the run's history.
