@@ -1,5 +1,7 @@
 #include "study/record.hpp"
 
+#include <algorithm>
+
 #include "support/files.hpp"
 #include "support/json.hpp"
 
@@ -31,13 +33,16 @@ std::optional<Record> read_result(const fs::path& file, const RunKey& key, const
     });
     json.at("digest").get_to(record.digest);
     const bool interrupted = json.at("ending") == "interrupted";
+    const auto hash = json.at("provenance").at("case_hash").get<std::string>();
+    const bool earlier = std::ranges::find(of.earlier, hash) != of.earlier.end();
     const Json& from = json.at("provenance");
-    if (from.at("seed") != of.seed || from.at("case_hash") != of.case_hash ||
+    if (from.at("seed") != of.seed || (hash != of.case_hash && !earlier) ||
         from.at("realization") != key.drawn_realization() || from.at("perturbation").is_null() == key.is_replicate())
       throw ForeignResult(
           file.string() +
           " is of another run or study (seed, case hash, realization or perturbation differ); remove it");
-    return interrupted ? std::nullopt : std::optional(std::move(record));
+    const bool too_short = earlier && !json.at("at_rest").get<bool>();
+    return interrupted || too_short ? std::nullopt : std::optional(std::move(record));
   };
   try {
     return read_json(file, max_result_bytes, "the result of a run", read);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "study/run_key.hpp"
 #include "support/error.hpp"
@@ -62,6 +63,7 @@ struct Failure {
 struct StudyIdentity {
   std::uint64_t seed = 0;
   std::string case_hash;
+  std::vector<std::string> earlier = {};  ///< Plan::earlier
 };
 
 /// A result.json of another run or another study.
@@ -69,8 +71,8 @@ struct ForeignResult : IoError {
   using IoError::IoError;
 };
 
-/// The record in a result.json of `key` that came to its end; nothing where the file is missing, damaged (the run is
-/// then carried out again) or of an interrupted run.
+/// The record in a result.json of `key` that came to its end; nothing where the file is missing, damaged, of an
+/// interrupted run, or of a run that still moved at an earlier end than the study's: it is then carried out again.
 /// @throws ForeignResult
 std::optional<Record> read_result(const std::filesystem::path& file, const RunKey& key, const StudyIdentity& of);
 

@@ -199,7 +199,7 @@ Json StudySummary::json() const {
                  {{"program", "talus"},
                   {"version", plan_.version},
                   {"seed", plan_.seed},
-                  {"case_hash", plan_.case_hash},
+                  {"case_hash", plan_.of.hash},
                   {"sampling", is_hypercube(plan_) ? "latin_hypercube" : "monte_carlo"}}},
                 {"realizations", realizations_json()}};
   if (is_hypercube(plan_)) study["provenance"]["stratified_modes"] = plan_.study.stratified_modes;
