@@ -40,6 +40,7 @@ RunResult sample_result() {
           .penetrated = 1,
           .left_domain = 2,
           .at_rest = true,
+          .mass = {.filled = 27901.5, .outline = 27900.25},
           .digest = "0123456789abcdef",
           .backend = "vectorised",
           .simd = "AVX2",
@@ -84,6 +85,8 @@ TEST(ResultJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(d["left_domain"], 2);
   EXPECT_EQ(d["at_rest"], true);
   EXPECT_EQ(d["ending"], "at_rest");
+  EXPECT_EQ(d["mass_kg_m"]["filled"], 27901.5);
+  EXPECT_EQ(d["mass_kg_m"]["outline"], 27900.25);
   EXPECT_EQ(d["digest"], "0123456789abcdef");
   EXPECT_EQ(d["backend"], "vectorised");
   EXPECT_EQ(d["simd"], "AVX2");
@@ -125,16 +128,18 @@ TEST(ResultJson, ComesBack) {
   EXPECT_EQ(again.dump(), document().dump());
 }
 
-TEST(ResultJson, OfAnEarlierVersionIsReadWithoutTheNameOfTheLoops) {
+TEST(ResultJson, OfAnEarlierVersionIsReadWithoutMassAndNameOfTheLoops) {
   const TemporaryDirectory dir;
   json earlier = document();
   earlier.erase("backend");
   earlier.erase("simd");
+  earlier.erase("mass_kg_m");
   EXPECT_EQ(schema_faults(earlier), "");
   write_file_atomically(dir / "result.json", earlier.dump());
   const RunResult result = read_result(dir / "result.json").first;
   EXPECT_EQ(result.backend, "");
   EXPECT_EQ(result.simd, "");
+  EXPECT_EQ(result.mass.outline, 0.0);
   EXPECT_EQ(result.digest, earlier["digest"]);
 }
 
@@ -186,7 +191,8 @@ std::string refusal(const TemporaryDirectory& dir, const json& bad) {
 TEST(ResultJson, NamesAnyKeyThatIsMissing) {
   const TemporaryDirectory dir;
   for (const std::string& pointer : pointers(document())) {
-    if (pointer == "/backend" || pointer == "/simd") continue;  // earlier versions did not write them
+    if (pointer == "/backend" || pointer == "/simd" || pointer == "/mass_kg_m")
+      continue;  // earlier versions did not write them
     const json::json_pointer place(pointer);
     json bad = document();
     bad[place.parent_pointer()].erase(place.back());
