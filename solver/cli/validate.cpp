@@ -77,7 +77,8 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
               {"step_s", d.step},
               {"steps", d.steps},
               {"memory_bytes", d.memory},
-              {"mass_kg_m", {{"filled", d.mass.filled}, {"outline", d.mass.outline}}}};
+              {"mass_kg_m", {{"filled", d.mass.filled}, {"outline", d.mass.outline}}},
+              {"slides_to", loaded.resolved.at("terrain").at("slides_to")}};
   if (d.captured_variance) out["field"] = {{"terms", d.field_terms}, {"captured_variance", *d.captured_variance}};
   out["warnings"] = to_json(loaded.warnings);
   return out;
@@ -87,7 +88,10 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
   std::printf("%s\n", loaded.value.title.c_str());
   std::printf("particles          %zu soil + %zu wall\n", d.soil, d.wall);
   std::printf("mass               %.0f kg/m, %+.2f %% of the outlines'\n", d.mass.filled,
-              100.0 * (d.mass.filled / d.mass.outline - 1.0));
+              std::round(1e4 * (d.mass.filled / d.mass.outline - 1.0)) / 100.0 + 0.0);
+  const RunOutAxis& axis = loaded.value.model.terrain.run_out;
+  std::printf("slides to          the %s; run-outs from x = %g m\n", axis.to == SlidesTo::right ? "right" : "left",
+              axis.from);
   std::printf("time step          %.3g s%s\n", d.step,
               loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");
   std::printf("steps              about %.0f to %.4g s\n", d.steps, loaded.value.model.time.end);

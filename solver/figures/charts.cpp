@@ -89,7 +89,7 @@ Sheet exceedance_sheet(const StudyFiles& study) {
   const double lo = rows.empty() ? 0.0 : rows.front()[0];
   const double hi = rows.empty() ? 1.0 : rows.back()[0];
   const double room = hi > lo ? 0.06 * (hi - lo) : 1.0;
-  sheet.axes({lo - room, hi + 3 * room, nice_step(hi - lo + 4 * room, 8), "x (m), from the left boundary"},
+  sheet.axes({lo - room, hi + 3 * room, nice_step(hi - lo + 4 * room, 8), "run-out distance x (m)"},
              {0, 1.02, 0.1, "probability of exceedance"});
   mark_quantile(sheet.script, study, 0.5, "half of the runs");
   mark_quantile(sheet.script, study, 0.9, "1 in 10");

@@ -76,7 +76,7 @@ void draw_histogram(Sheet& sheet, const Quantity& q, const Axis& x) {
 
 void draw_strip(Sheet& sheet, const std::vector<Bar>& bars, Axis x) {
   sheet.script("unset label");
-  x.label = "run-out distance (m): farthest particle, from the left boundary";
+  x.label = "run-out distance (m) of the farthest particle";
   sheet.axes(x, {0.4, 3.6, 0, ""});
   sheet.script("set border 1");
   sheet.script("set format x '%g'");

@@ -8,6 +8,18 @@
 
 namespace talus {
 
+enum class SlidesTo { right, left };
+
+/// How run-outs are measured: along x, the way the slide goes.
+struct RunOutAxis {
+  double from = 0.0;  ///< x where they begin [m]
+  SlidesTo to = SlidesTo::right;
+
+  double distance(double x) const { return to == SlidesTo::right ? x - from : from - x; }
+  double x(double distance) const { return to == SlidesTo::right ? from + distance : from - distance; }
+  bool operator==(const RunOutAxis&) const = default;
+};
+
 /// The rigid ground. An open bed runs from left to right, the soil lies above it; a closed one is a ring that is walked
 /// counter-clockwise and holds the soil inside.
 struct Terrain {
@@ -16,7 +28,7 @@ struct Terrain {
   bool left_wall = true;    ///< a vertical wall stands on the first bed vertex
   bool right_wall = false;  ///< a vertical wall stands on the last bed vertex
   double wall_top = 0.0;    ///< y of the top of the end walls [m]
-  double left_boundary = 0.0;  ///< x from which influence zones are measured [m]
+  RunOutAxis run_out;
   bool operator==(const Terrain&) const = default;
 };
 
