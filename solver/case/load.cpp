@@ -96,6 +96,9 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   for (Fault& warning : find_warnings(out.value)) out.warnings.push_back(std::move(warning));
   out.warnings = name_origins(std::move(out.warnings), applied);
   out.hash = case_hash(out.resolved);
+  Json endless = out.resolved;
+  for (const char* key : {"end_s", "snapshot_times_s"}) endless["time"].erase(key);
+  out.hash_without_end = case_hash(endless);
   return out;
 }
 
@@ -124,7 +127,11 @@ Plan make_plan(const LoadedCase& loaded, std::uint64_t seed, const std::string& 
     throw ConfigError(
         "/study/stop_when_ci_half_width_below_m",
         "a Latin hypercube is one sample of a fixed size and cannot stop early; use monte_carlo or remove this");
-  return {.title = c.title, .case_hash = loaded.hash, .version = version, .seed = seed, .study = c.study};
+  return {.title = c.title,
+          .of = {.hash = loaded.hash, .hash_without_end = loaded.hash_without_end, .end = c.model.time.end},
+          .version = version,
+          .seed = seed,
+          .study = c.study};
 }
 
 }  // namespace talus

@@ -18,6 +18,10 @@ std::optional<RunKey> run_of_file(const std::string& name, const std::string& en
 
 }  // namespace
 
+StudyIdentity identity(const Plan& plan) {
+  return {.seed = plan.seed, .case_hash = plan.of.hash, .earlier = plan.earlier};
+}
+
 Records read_records(const StudyPaths& paths, RunKind kind, const StudyIdentity& identity) {
   Records records;
   if (!fs::exists(paths.results(kind))) return records;  // nothing has been run yet
@@ -37,7 +41,7 @@ Records read_records(const StudyPaths& paths, RunKind kind, const StudyIdentity&
 DirectoryStore::DirectoryStore(StudyPaths paths, const Plan& plan, std::int64_t first, std::int64_t end)
     : info_{.name = {},
             .paths = std::move(paths),
-            .identity = {.seed = plan.seed, .case_hash = plan.case_hash},
+            .identity = identity(plan),
             .spec = plan.study,
             .first = first,
             .end = end},

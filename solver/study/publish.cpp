@@ -138,7 +138,7 @@ void compare(const Plan& a, const Plan& b, const fs::path& first, const fs::path
                                 wants + " there, not " + has});
   };
   const bool hypercube = a.study.sampling == Sampling::latin_hypercube;
-  differ("case hash", a.case_hash, b.case_hash);
+  differ("case hash", a.of.hash, b.of.hash);
   differ("seed", std::to_string(a.seed), std::to_string(b.seed));
   differ("version of Talus", a.version, b.version);
   if (hypercube)
@@ -238,7 +238,7 @@ void write_merged(const fs::path& out, const Tables& tables, const fs::path& ori
                   ": it holds a study with runs of its own; choose another directory");
   const std::string resolved_case =
       read_file(StudyPaths{origin}.resolved_case(), max_case_bytes);  // before anything is written
-  OutputDirectory claimed(out, OutputKind::study, tables.plan.case_hash, true);
+  OutputDirectory claimed(out, OutputKind::study, tables.plan.of, true);
   write_file_atomically(StudyPaths{out}.resolved_case(), resolved_case);
   write_plan(out, tables.plan);
   write_tables(StudyPaths{out}, tables.plan, tables.runs, tables.floor);

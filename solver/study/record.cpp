@@ -72,14 +72,17 @@ std::optional<Record> read_result(const fs::path& file, const RunKey& key, const
     });
     json.at("digest").get_to(record.digest);
     const bool interrupted = json.at("ending") == "interrupted";
+    const auto hash = json.at("provenance").at("case_hash").get<std::string>();
+    const bool earlier = std::ranges::find(of.earlier, hash) != of.earlier.end();
     const Json& from = json.at("provenance");
-    if (from.at("seed") != of.seed || from.at("case_hash") != of.case_hash ||
+    if (from.at("seed") != of.seed || (hash != of.case_hash && !earlier) ||
         from.at("realization") != key.drawn_realization() || from.at("perturbation").is_null() == key.is_replicate())
       throw ForeignResult(
           file.string() +
           " is of another run or study (seed, case hash, realization or perturbation differ); remove it");
+    const bool too_short = earlier && !json.at("at_rest").get<bool>();
+    if (interrupted || too_short) return std::nullopt;
     read_quality(json, record);
-    if (interrupted) return std::nullopt;
     if (record.verdict == Verdict::invalid) return failed_record(record.index, reason_of_invalid(record.objections));
     return record;
   };

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "study/run_key.hpp"
 #include "support/error.hpp"
@@ -82,6 +83,7 @@ struct Failure {
 struct StudyIdentity {
   std::uint64_t seed = 0;
   std::string case_hash;
+  std::vector<std::string> earlier = {};  ///< Plan::earlier
 };
 
 /// A result.json of another run or another study.
@@ -90,8 +92,8 @@ struct ForeignResult : IoError {
 };
 
 /// The record in a result.json of `key` that came to its end, a failed one where the result is invalid; nothing where
-/// the file is missing, damaged (the run is then carried out again) or of an interrupted run. A result of an earlier
-/// version, which assessed nothing, is read too.
+/// the file is missing, damaged, of an interrupted run, or of a run that still moved at an earlier end than the
+/// study's: it is then carried out again. A result of an earlier version, which assessed nothing, is read too.
 /// @throws ForeignResult
 std::optional<Record> read_result(const std::filesystem::path& file, const RunKey& key, const StudyIdentity& of);
 

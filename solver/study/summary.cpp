@@ -206,7 +206,7 @@ Json StudySummary::json() const {
                  {{"program", "talus"},
                   {"version", plan_.version},
                   {"seed", plan_.seed},
-                  {"case_hash", plan_.case_hash},
+                  {"case_hash", plan_.of.hash},
                   {"sampling", is_hypercube(plan_) ? "latin_hypercube" : "monte_carlo"}}},
                 {"realizations", realizations_json()},
                 {"quality", quality_json()}};
