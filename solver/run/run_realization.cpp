@@ -2,6 +2,7 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -30,6 +31,14 @@ std::string utc_now() {
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
   return text;
+}
+
+/// Of the axes along which the field varies [m]; unset where it does not vary, or is averaged over cells.
+std::optional<double> shortest_correlation(const std::optional<FieldSpec>& field, const std::vector<double>& xi) {
+  if (!field || field->cell_average || field->sigma == 0.0) return std::nullopt;
+  if (std::ranges::all_of(xi, [](double x) { return x == 0.0; })) return std::nullopt;
+  if (!field->along_y()) return field->ell_x;
+  return field->along_x() ? std::min(field->ell_x, field->ell_y) : field->ell_y;
 }
 
 /// The finished run of a directory, if it is the one that is asked for.
@@ -133,6 +142,10 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
   outcome.result.wall_clock = earlier + elapsed();
   outcome.result.threads = threads.most_used();
   outcome.result.field = soil.summary;
+  RunFacts facts = simulation.facts();
+  facts.correlation_length = shortest_correlation(problem.field, soil.xi);
+  outcome.result.quality = assess(facts);
+  outcome.result.warnings = loaded.warnings;
   outcome.document = result_json(outcome.result, provenance).dump(2) + "\n";
   write_file_atomically(out.path() / "result.json", outcome.document);
   const bool moves = outcome.result.ending == Ending::end_time && !outcome.result.at_rest;

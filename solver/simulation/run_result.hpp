@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "simulation/energy_budget.hpp"
+#include "support/error.hpp"
 #include "support/measures.hpp"
 #include "support/quality.hpp"
 
@@ -47,8 +49,9 @@ struct RunResult {
   std::string backend = "plain";  ///< the loops that ran: "vectorised" or "plain"; empty: not recorded
   std::string simd = "none";      ///< instruction set of the vectorised loops, otherwise "none"; empty: not recorded
   FieldSummary field;
-  EnergyBudget energy;  ///< at the end
-  Quality quality;
+  EnergyBudget energy = {};  ///< at the end
+  Quality quality = {};
+  std::vector<Fault> warnings = {};  ///< of the case: what can be run but may not be meant
 };
 
 /// A line of the run's history.
