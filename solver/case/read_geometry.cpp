@@ -134,11 +134,11 @@ void read_run_out(ObjectReader& in, Terrain& t, const SlideInput& slide, double 
 
 /// By default 5 particle spacings over the slide and over the walled ends of the bed.
 void read_wall_top(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
-  const double highest = slide.parts.empty() ? -1e6 : bounding_box(slide.parts).hi.y;
-  const double left = t.left_wall && !t.bed.empty() ? t.bed.front().y : -1e6;
-  const double right = t.right_wall && !t.bed.empty() ? t.bed.back().y : -1e6;
+  const double highest = slide.parts.empty() ? coordinate.lo : bounding_box(slide.parts).hi.y;
+  const double left = t.left_wall && !t.bed.empty() ? t.bed.front().y : coordinate.lo;
+  const double right = t.right_wall && !t.bed.empty() ? t.bed.back().y : coordinate.lo;
   const double bed = std::max(left, right);
-  t.wall_top = std::clamp(std::max(highest, bed) + 5.0 * dx, -1e6, 1e6);
+  t.wall_top = std::clamp(std::max(highest, bed) + 5.0 * dx, coordinate.lo, coordinate.hi);
   in.number("wall_top_m", t.wall_top, coordinate,
             {"Height y of the top of the end walls; above the bed there. Open beds only.", "site",
              "5 particle spacings over the highest point of slide and walled bed ends"});

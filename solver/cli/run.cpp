@@ -59,7 +59,7 @@ class ProgressLine {
 };
 
 void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t seed) {
-  std::printf("distances from x = %g m to the %s\n", axis.from, axis.to == SlidesTo::right ? "right" : "left");
+  std::printf("distances from x = %.10g m to the %s\n", axis.from, axis.to == SlidesTo::right ? "right" : "left");
   for (const Measure& measure : measure_table)
     std::printf("%-26s%10.3f %s%s\n", ((measure.front ? "front, " : "") + std::string(measure.label)).c_str(),
                 r.measures.*measure.member, measure.unit,
@@ -96,7 +96,8 @@ Exit run(const RunOptions& options) {
                        .show_progress = [&](const Simulation& s, double elapsed) { progress.show(s, end, elapsed); },
                        .continued = say_continued};
   catch_stop_signals(!options.study_worker);
-  const RunOutAxis axis = loaded.value.model.terrain.run_out;
+  RunOutAxis axis = loaded.value.model.terrain.run_out;
+  axis.from += loaded.value.model.terrain.origin.x;
   const RunOutcome outcome = run_realization(std::move(loaded),
                                              {.directory = options.out,
                                               .resume = options.resume,

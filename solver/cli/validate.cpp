@@ -90,8 +90,8 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
   std::printf("mass               %.0f kg/m, %+.2f %% of the outlines'\n", d.mass.filled,
               std::round(1e4 * (d.mass.filled / d.mass.outline - 1.0)) / 100.0 + 0.0);
   const RunOutAxis& axis = loaded.value.model.terrain.run_out;
-  std::printf("slides to          the %s; run-outs from x = %g m\n", axis.to == SlidesTo::right ? "right" : "left",
-              axis.from);
+  std::printf("slides to          the %s; run-outs from x = %.10g m\n", axis.to == SlidesTo::right ? "right" : "left",
+              axis.from + loaded.value.model.terrain.origin.x);
   std::printf("time step          %.3g s%s\n", d.step,
               loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");
   std::printf("steps              about %.0f to %.4g s\n", d.steps, loaded.value.model.time.end);

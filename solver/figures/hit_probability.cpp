@@ -60,10 +60,13 @@ Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std
   const double metre = std::min((right - left) / box.width(), tallest / box.height());
   const double edge = left + metre * box.width();
   const double terrain_bottom = curve_bottom + gap + metre * box.height();
-  Sheet sheet = chart(study,
-                      "Probability that the front reaches x, given failure (band: 95 %, Wilson); below: terrain and "
-                      "slide before failure",
-                      {std::round(edge + 28), std::round(terrain_bottom + beneath)});
+  Sheet sheet =
+      chart(study,
+            std::string() +
+                "Probability that the front reaches x, given failure (band: 95 %, Wilson); below: terrain and "
+                "slide before failure" +
+                censored_text(q),
+            {std::round(edge + 28), std::round(terrain_bottom + beneath)});
   Script& script = sheet.script;
   Axis x{box.lo.x, box.hi.x, nice_step(box.width(), edge - left, 90), ""};
 
@@ -77,8 +80,10 @@ Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std
 
   script("unset label");
   script("set format x '%g'");
-  x.label = "x (m)";
-  sheet.axes(x, {box.lo.y, box.hi.y, nice_step(box.height(), metre * box.height(), 50), "y (m)"});
+  const std::string label = axis_label("x", terrain.origin.x);
+  x.label = label;
+  sheet.axes(
+      x, {box.lo.y, box.hi.y, nice_step(box.height(), metre * box.height(), 50), axis_label("y", terrain.origin.y)});
   sheet.place({left, edge, curve_bottom + gap, terrain_bottom});
   const GroundElements bed = ground_elements(script, terrain, box, metre, "");
   std::vector<std::string> elements = bed.behind;

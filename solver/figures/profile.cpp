@@ -86,8 +86,9 @@ void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRan
   const Panel& panel = d.layout.panels[k];
   const std::string tag = std::to_string(k);
   d.sheet.place(panel);
-  d.sheet.axes({d.view.lo.x, d.view.hi.x, nice_step(d.view.width(), panel.width(), 90), "x (m)"},
-               {d.view.lo.y, d.view.hi.y, nice_step(d.view.height(), panel.height(), 50), "y (m)"});
+  d.sheet.axes(
+      {d.view.lo.x, d.view.hi.x, nice_step(d.view.width(), panel.width(), 90), axis_label("x", d.terrain.origin.x)},
+      {d.view.lo.y, d.view.hi.y, nice_step(d.view.height(), panel.height(), 50), axis_label("y", d.terrain.origin.y)});
   d.sheet.script("set xlabel offset 0,0.4");
   d.sheet.script("set ylabel offset 0.8,0");
   const std::string caption = shot.caption.empty() ? "t = " + fixed(shot.frame->time, 2) + " s" : shot.caption;

@@ -29,6 +29,7 @@ struct Terrain {
   bool right_wall = false;  ///< a vertical wall stands on the last bed vertex
   double wall_top = 0.0;    ///< y of the top of the end walls [m]
   RunOutAxis run_out;
+  Vec2 origin;  ///< what was taken off the coordinates of the case; what is published has it added again [m]
   bool operator==(const Terrain&) const = default;
 };
 

@@ -18,6 +18,7 @@ Frame Simulation::frame() const {
   Frame f;
   f.time = time_;
   f.step = steps_;
+  f.origin = model_.terrain.origin;
   f.n_soil = soil_.size();
   const std::size_t n = soil_.size() + walls_.size();
   for (auto* array : {&f.position, &f.displacement, &f.velocity}) array->resize(n);
