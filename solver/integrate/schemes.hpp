@@ -41,6 +41,11 @@ auto advance(Integrator integrator, BackEnd& y, double dt) {
   return integrator == Integrator::rk2 ? step_rk2(y, dt) : step_leapfrog(y, dt);
 }
 
+/// How far ahead of the state at the start of a step its first evaluation is, whose stress is committed [s].
+constexpr double first_evaluation(Integrator integrator, double dt) {
+  return integrator == Integrator::rk2 ? 0.0 : 0.5 * dt;
+}
+
 /// Evaluations of the right-hand side in one step.
 constexpr int evaluations_per_step(Integrator integrator) { return integrator == Integrator::rk2 ? 2 : 1; }
 
