@@ -95,11 +95,10 @@ PlainFlow::PlainFlow(FlowConstants constants, Soil& soil) : Flow(std::move(const
 StepExtrema PlainFlow::step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt, Powers* powers) {
   Stopwatch watch;
   double evaluating = 0.0;
-  bool measure = powers != nullptr;
+  int left = evaluations_per_step(constants().numerics.integrator);
   const Evaluate evaluate = [&](Soil& s) {
     watch.lap(times_.update);
-    evaluate_plain(constants(), s, walls, cells, measure ? &powers_ : nullptr);
-    measure = false;
+    evaluate_plain(constants(), s, walls, cells, --left == 0 && powers ? &powers_ : nullptr);
     watch.lap(evaluating);
   };
   PlainState state(soil, start_, evaluate);

@@ -7,6 +7,8 @@
 //                            taken off y as well.
 //   move(dt, velocity)       y <- y + dt f(y'), positions with the velocity that `velocity` names.
 
+// The last evaluation of a step is at its middle, ahead = dt/2: that is where powers are measured.
+
 #include "sph/numerics.hpp"
 
 namespace talus {
@@ -39,11 +41,6 @@ auto step_leapfrog(BackEnd& y, double dt) {
 template <class BackEnd>
 auto advance(Integrator integrator, BackEnd& y, double dt) {
   return integrator == Integrator::rk2 ? step_rk2(y, dt) : step_leapfrog(y, dt);
-}
-
-/// How far ahead of the state at the start of a step its first evaluation is, whose stress is committed [s].
-constexpr double first_evaluation(Integrator integrator, double dt) {
-  return integrator == Integrator::rk2 ? 0.0 : 0.5 * dt;
 }
 
 /// Evaluations of the right-hand side in one step.

@@ -214,11 +214,11 @@ struct VectorisedFlow::ThreadStep {
   Soil& soil;
   WallParticles& walls;
   Stopwatch& watch;
-  bool measure;  ///< the powers at the next evaluation
+  bool measure;  ///< the powers in the middle of the step
 
   void evaluate(double ahead, bool commit) {
-    flow.evaluate_in_region(soil, walls, ahead, commit, ahead != 0.0 || !flow.present_is_packed_, measure, watch);
-    measure = false;
+    flow.evaluate_in_region(soil, walls, ahead, commit, ahead != 0.0 || !flow.present_is_packed_,
+                            measure && ahead != 0.0, watch);
   }
   StepExtrema move(double dt, PositionVelocity velocity) {
     StepExtrema extrema;

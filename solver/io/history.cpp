@@ -13,18 +13,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The terms of the energy balance that follow the first six columns; the kinetic energy is one of those.
-constexpr auto further_terms = std::span(energy_terms).subspan<1>();
+constexpr std::size_t terms = std::size(energy_terms), columns = 6 + terms + 1;
 
 const std::string& header() {
   static const std::string text = [] {
     std::string names = "time_s,step,front_m,centre_of_mass_x_m,kinetic_energy_J_per_m,max_speed_m_s";
-    for (const EnergyTerm& term : further_terms) names += std::string(",") + term.key;
+    for (const EnergyTerm& term : energy_terms) names += std::string(",") + term.key;
     return names + ",created_J_m";
   }();
   return text;
 }
-constexpr std::size_t columns = 6 + further_terms.size() + 1;
 
 bool parse(const std::vector<std::string>& fields, HistoryRow& row) {
   if (fields.size() != columns) return false;
@@ -35,16 +33,15 @@ bool parse(const std::vector<std::string>& fields, HistoryRow& row) {
   };
   double created = 0.0;  // follows from the others
   bool good = number(0, row.time) && number(1, row.step) && number(2, row.front) && number(3, row.centre_of_mass_x) &&
-              number(4, row.energy.kinetic) && number(5, row.max_speed) && number(columns - 1, created);
-  for (std::size_t i = 0; i < further_terms.size(); ++i)
-    good = good && number(6 + i, row.energy.*further_terms[i].value);
+              number(4, row.kinetic_energy) && number(5, row.max_speed) && number(columns - 1, created);
+  for (std::size_t i = 0; i < terms; ++i) good = good && number(6 + i, row.energy.*energy_terms[i].value);
   return good;
 }
 
 std::string line_of(const HistoryRow& row) {
   std::string line = to_text(row.time) + "," + std::to_string(row.step) + "," + to_text(row.front) + "," +
-                     to_text(row.centre_of_mass_x) + "," + to_text(row.energy.kinetic) + "," + to_text(row.max_speed);
-  for (const EnergyTerm& term : further_terms) line += "," + to_text(row.energy.*term.value);
+                     to_text(row.centre_of_mass_x) + "," + to_text(row.kinetic_energy) + "," + to_text(row.max_speed);
+  for (const EnergyTerm& term : energy_terms) line += "," + to_text(row.energy.*term.value);
   return line + "," + to_text(row.energy.created()) + "\n";
 }
 

@@ -48,9 +48,11 @@ class ObjectIo {
   }
   void boolean(const char* key, bool& value) { transfer(key, value, &Json::is_boolean, "true or false"); }
   void text(const char* key, std::string& value) { transfer(key, value, &Json::is_string, "a text"); }
+  /// Whether a key is to be transferred that earlier versions did not write.
+  bool has(const char* key) const { return !reading_ || node_.contains(key); }
   /// For a key that earlier versions did not write; empty without it.
   void text_or_empty(const char* key, std::string& value) {
-    if (!reading_ || node_.contains(key))
+    if (has(key))
       text(key, value);
     else
       value.clear();
@@ -109,6 +111,15 @@ class ObjectIo {
   std::string pointer_;
 };
 
+/// What follows from the terms is written for readers.
+void transfer_energy(ObjectIo energy, EnergyBudget& budget) {
+  for (const EnergyTerm& term : energy_terms) energy.number(term.key, budget.*term.value);
+  double created = budget.created();
+  std::optional<double> share = budget.created_share();
+  energy.number("created_J_m", created);
+  energy.optional("created_share", share);
+}
+
 /// Every member of the document, in its order.
 void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
   for (const Measure& measure : measure_table) root.number(measure.key, result.measures.*measure.member);
@@ -136,6 +147,7 @@ void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
   field.number("mean_friction_angle_deg", mean_phi_deg, 0.0);
   field.integer("terms", result.field.terms);
   result.field.mean_phi = radians(mean_phi_deg);
+  if (root.has("energy")) transfer_energy(root.object("energy"), result.energy);
 
   ObjectIo provenance = root.object("provenance");
   provenance.text("version", from.version);

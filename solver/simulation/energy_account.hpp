@@ -22,10 +22,8 @@ class EnergyAccount {
   /// @param soil  at the start of the run
   EnergyAccount(const FlowConstants& k, const Soil& soil);
 
-  /// Whether the next step, after `steps`, is to measure: the first one, and one in 10 or 11 after it. The steps are
-  /// floor(n (9 + golden ratio)), which keep no pace with anything that happens every so many steps, such as a density
-  /// filter, after which the pressure rings.
-  static bool due(std::int64_t steps);
+  /// Whether the next step, after `steps`, is to measure.
+  bool due(std::int64_t steps) const;
   /// @param time  at which the powers were measured [s], not earlier than those before
   void measure(const Powers& powers, double time);
   /// What a density filter has taken off the energy of the volume [J/m].
@@ -47,6 +45,7 @@ class EnergyAccount {
   double measured_at_ = 0.0;
   bool measured_ = false;
   double stored_at_start_;
+  double interval_;  ///< mean number of steps between two measurements
 };
 
 }  // namespace talus

@@ -48,7 +48,8 @@ Frame Simulation::frame() const {
 
 HistoryRow Simulation::history_row() const {
   const double left = model_.terrain.left_boundary;
-  return {time_, steps_, farthest(soil_) - left, centre_of_mass(soil_).x - left, max_speed_, energy()};
+  return {time_,      steps_,  farthest(soil_) - left, centre_of_mass(soil_).x - left, kinetic_energy(soil_),
+          max_speed_, energy()};
 }
 
 EnergyBudget Simulation::energy() const {

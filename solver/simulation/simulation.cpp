@@ -60,10 +60,10 @@ void Simulation::step(double until) {
 
 /// The flow of one step, whose powers are measured when they are due.
 StepExtrema Simulation::flow_step(double dt) {
-  if (!EnergyAccount::due(steps_)) return flow_->step(soil_, walls_, neighbours_.cells(), dt);
+  if (!energy_account_.due(steps_)) return flow_->step(soil_, walls_, neighbours_.cells(), dt);
   Powers powers;
   const StepExtrema extrema = flow_->step(soil_, walls_, neighbours_.cells(), dt, &powers);
-  energy_account_.measure(powers, time_ + first_evaluation(model_.numerics.integrator, dt));
+  energy_account_.measure(powers, time_ + 0.5 * dt);
   return extrema;
 }
 

@@ -43,7 +43,19 @@ RunResult sample_result() {
           .digest = "0123456789abcdef",
           .backend = "vectorised",
           .simd = "AVX2",
-          .field = {.captured_variance = 0.016, .mean_phi = radians(25.0), .terms = 5}};
+          .field = {.captured_variance = 0.016, .mean_phi = radians(25.0), .terms = 5},
+          .energy = {.kinetic = 1,
+                     .potential = -1024,
+                     .compression = 2,
+                     .distortion = 4,
+                     .friction = 512,
+                     .viscosity = 8,
+                     .artificial_viscosity = 256,
+                     .density_diffusion = 16,
+                     .boundaries = 32,
+                     .contact = 64,
+                     .departed = 128,
+                     .stored_at_start = 3}};
 }
 
 Provenance sample_provenance() {
@@ -90,6 +102,21 @@ TEST(ResultJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(d["field"]["captured_variance"], 0.016);
   EXPECT_NEAR(d["field"]["mean_friction_angle_deg"], 25.0, 1e-13);
   EXPECT_EQ(d["field"]["terms"], 5);
+  constexpr double created = 1 - 1024 + 2 + 4 + 512 + 8 + 256 + 16 + 32 + 64 + 128 - 3;
+  EXPECT_EQ(d["energy"], (json{{"kinetic_J_m", 1},
+                               {"potential_J_m", -1024},
+                               {"compression_J_m", 2},
+                               {"distortion_J_m", 4},
+                               {"friction_J_m", 512},
+                               {"viscosity_J_m", 8},
+                               {"artificial_viscosity_J_m", 256},
+                               {"density_diffusion_J_m", 16},
+                               {"boundaries_J_m", 32},
+                               {"contact_J_m", 64},
+                               {"departed_J_m", 128},
+                               {"stored_at_start_J_m", 3},
+                               {"created_J_m", created},
+                               {"created_share", created / 1024}}));
   EXPECT_EQ(d["provenance"]["version"], "0.1.0");
   EXPECT_EQ(d["provenance"]["seed"], 9007199254740993u);
   EXPECT_EQ(d["provenance"]["realization"], 7);
@@ -111,6 +138,7 @@ TEST(ResultJson, ObeysItsSchema) {
   empty.digest = "ffffffffffffffff";
   const ordered_json d = result_json(empty, deterministic);
   EXPECT_TRUE(d["provenance"]["realization"].is_null());
+  EXPECT_TRUE(d["energy"]["created_share"].is_null()) << "gravity has done no work";
   EXPECT_EQ(schema_faults(json::parse(d.dump())), "");
 }
 
@@ -125,16 +153,18 @@ TEST(ResultJson, ComesBack) {
   EXPECT_EQ(again.dump(), document().dump());
 }
 
-TEST(ResultJson, OfAnEarlierVersionIsReadWithoutTheNameOfTheLoops) {
+TEST(ResultJson, OfAnEarlierVersionIsReadWithoutTheLoopsAndTheEnergy) {
   const TemporaryDirectory dir;
   json earlier = document();
   earlier.erase("backend");
   earlier.erase("simd");
+  earlier.erase("energy");
   EXPECT_EQ(schema_faults(earlier), "");
   write_file_atomically(dir / "result.json", earlier.dump());
   const RunResult result = read_result(dir / "result.json").first;
   EXPECT_EQ(result.backend, "");
   EXPECT_EQ(result.simd, "");
+  EXPECT_EQ(result.energy, EnergyBudget());
   EXPECT_EQ(result.digest, earlier["digest"]);
 }
 
@@ -186,7 +216,8 @@ std::string refusal(const TemporaryDirectory& dir, const json& bad) {
 TEST(ResultJson, NamesAnyKeyThatIsMissing) {
   const TemporaryDirectory dir;
   for (const std::string& pointer : pointers(document())) {
-    if (pointer == "/backend" || pointer == "/simd") continue;  // earlier versions did not write them
+    // Earlier versions did not write these.
+    if (pointer == "/backend" || pointer == "/simd" || pointer == "/energy") continue;
     const json::json_pointer place(pointer);
     json bad = document();
     bad[place.parent_pointer()].erase(place.back());
