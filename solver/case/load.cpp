@@ -40,7 +40,9 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
   in.object("slide",
             "The soil that moves: outlines, or the ground surface before the slide and the slip surface beneath it.",
             Absent::fault, [&](ObjectReader& section) { slide = read_slide(section, directory, material); });
-  in.object("terrain", "The rigid ground. Give bed_m or bed_csv.", Absent::fault,
+  in.object("terrain",
+            "The rigid ground: a bed, or nothing where the slide is given by surfaces, which are joined to one.",
+            Absent::defaults,
             [&](ObjectReader& section) { read_terrain(section, m.terrain, directory, slide, m.dx, origins.bed); });
   m.slide = std::move(slide.parts);
   m.materials = std::move(slide.materials);
@@ -96,6 +98,7 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   for (Fault& warning : find_warnings(out.value)) out.warnings.push_back(std::move(warning));
   out.warnings = name_origins(std::move(out.warnings), applied);
   out.hash = case_hash(out.resolved);
+  out.bed_source = origins.bed.source;
   return out;
 }
 
