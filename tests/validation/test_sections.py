@@ -13,7 +13,7 @@ import tempfile
 import numpy as np
 
 PENETRATION = 0.5  # depth below the bed, in spacings, that counts as inside the ground
-FRONT_99, FARTHEST = 3.0, 4.0  # difference between the fronts of 99 % of the mass and of the farthest particle, in coarse spacings
+FRONT_99, FARTHEST = 3.0, 5.0  # difference between the fronts of 99 % of the particles and of the farthest one, in coarse spacings
 MOVED = 2.0  # displacement of the centre of mass, in coarse spacings, below which a section shows nothing
 
 

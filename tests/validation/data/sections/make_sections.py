@@ -137,10 +137,10 @@ def valley_side(raw):
     cells = np.arange(150, 420)
     ground = np.column_stack([321001 + 2 * cells, grid(raw / "dtm.tif")[60, cells]])
     slip = arc(ground, 321360, 321460, 13)
-    material = {"name": "soft clay", "density_kg_m3": 1700, "friction_angle_deg": 14}
+    material = {"name": "soft clay", "density_kg_m3": 1700, "friction_angle_deg": 10, "cohesion_Pa": 2000, "viscosity_Pa_s": 1000}
     save("valley-side", ground, slip, case(
         "valley-side", "Valley side on a national grid", "Elevations in whole metres on a grid of 2 m: steps of 1 m. Chainage is the easting. The slip surface is assumed.",
-        1.0, material, 60, numerics={"sound_speed_m_s": 80}))
+        1.0, material, 100, numerics={"sound_speed_m_s": 120}))
 
 
 def alpine(raw):
@@ -160,10 +160,10 @@ def hill(raw):
     rows = np.arange(40, 130)
     ground = np.column_stack([cell * rows, grid(raw / "hill.tif")[rows, 153]])
     slip = arc(ground, 1055, 1250, 20)
-    material = {"name": "soft clay", "density_kg_m3": 1600, "friction_angle_deg": 8}
+    material = {"name": "soft clay", "density_kg_m3": 1600, "friction_angle_deg": 8, "viscosity_Pa_s": 1000}
     save("hill", ground, slip, case(
         "hill", "Hillside above a plain", "Gentle hillside; the slide goes to the left and runs out on a plain. The slip surface is assumed.",
-        1.6, material, 80, {"left_end": "open", "right_end": "wall"}, numerics={"sound_speed_m_s": 100}))
+        1.6, material, 80, {"left_end": "open", "right_end": "wall"}, numerics={"sound_speed_m_s": 130}))
 
 
 def layered(raw):
