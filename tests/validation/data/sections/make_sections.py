@@ -121,7 +121,7 @@ def scarp(raw):
 def ledges(raw):
     ground = clip(escarpment(raw), 430, 760)
     slip = arc(ground, 463, 508, 6)
-    material = {"name": "soft clay", "density_kg_m3": 1700, "friction_angle_deg": 14, "cohesion_Pa": 500}
+    material = {"name": "soft clay", "density_kg_m3": 1700, "friction_angle_deg": 14, "cohesion_Pa": 1000}
     save("ledges", ground, slip, case(
         "ledges", "Ledges surveyed by lidar",
         "Lower part of the survey of the case scarp: ledges of 6 and 7 m. The slip surface is assumed.",
