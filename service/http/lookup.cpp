@@ -181,6 +181,7 @@ Json status_info(const Job& job, const Exchange& exchange) {
     info["title"] = job.title;
     info["seed"] = job.seed;
     info["realizations"] = {{"planned", job.planned}, {"done", job.done}, {"failed", job.failed}};
+    info["quality"] = job.quality.json();
   }
   info["links"] = links(job, exchange);
   return info;

@@ -71,6 +71,11 @@ Json brief(const Run& run, const Exchange& exchange, const Job& job) {
     json["digest"] = run.result->digest;
   }
   if (run.failure) json["reason"] = run.failure->reason;
+  if (run.result || run.failure) {
+    const Record record = run.result ? *run.result : failed_record(run.key.index, run.failure->reason);
+    json["verdict"] = word(record.verdict);
+    if (!record.objections.empty()) json["verdict_reasons"] = record.objections;
+  }
   json["href"] = exchange.base + path_of(job, run.key.index);
   return json;
 }

@@ -220,7 +220,7 @@ std::optional<Job> Jobs::submit_study(const Submission& submission, const Store:
   job.replicates = plan.study.noise_floor_replicates;
   job.max_failed_share = plan.study.max_failed_share;
   job.may_stop_early = plan.study.stop_half_width.has_value();
-  job.case_hash = plan.case_hash;
+  job.case_hash = plan.of.hash;
   job.inputs = dump({{"quantity", study.quantity}, {"outputs", submission.outputs}, {"raw", submission.raw}});
   made.move_to(data_.job(job.id));
   std::optional<Job> recorded = record(job, response);

@@ -166,6 +166,7 @@ void Scheduler::finish(const Job& job) {
   std::string message = std::to_string(summary.done()) + " realizations done";
   if (summary.failed() > 0) message += ", " + std::to_string(summary.failed()) + " failed";
   if (too_many) message += ": more than max_failed_share = " + to_text(job.max_failed_share) + " of those planned";
+  if (const std::string quality = quality_line(summary.quality_json()); !quality.empty()) message += "; " + quality;
   if (summary.stopped_early()) message += "; stopped early: the mean has the requested precision";
   if (!store_.finish(job.number, too_many ? JobState::failed : JobState::successful, message)) return;
   log_info("job_ended", {{"job", job.id},

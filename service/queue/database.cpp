@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/documents.hpp"
+#include "study/record.hpp"
 #include "support/measures.hpp"
 
 namespace talus::service {
@@ -21,18 +22,19 @@ void prepare(SQLite::Database& db) {
   db.exec("PRAGMA foreign_keys = ON");
 }
 
-/// Adds a column for each measure that the database does not have yet; it is NULL in the runs recorded before.
-void add_measure_columns(SQLite::Database& db) {
+/// Adds a column for each number of a run that the database does not have yet; it is NULL in the runs recorded before.
+void add_number_columns(SQLite::Database& db) {
   std::set<std::string> columns;
   for (SQLite::Statement query(db, "SELECT name FROM pragma_table_info('runs')"); query.executeStep();)
     columns.insert(query.getColumn(0).getString());
-  std::string all;
-  for (const Measure& measure : measure_table) {
-    all += std::string(", ") + measure.key;
-    if (columns.contains(measure.key)) continue;
+  const Record any;
+  visit_numbers(any, [&](const char* key, const char*, auto) {
+    if (columns.contains(key)) return;
     db.exec("DROP INDEX IF EXISTS runs_measures");
-    db.exec(std::string("ALTER TABLE runs ADD COLUMN ") + measure.key + " REAL");
-  }
+    db.exec(std::string("ALTER TABLE runs ADD COLUMN ") + key + " REAL");
+  });
+  std::string all;
+  for (const Measure& measure : measure_table) all += std::string(", ") + measure.key;
   // For histograms: the measures of the runs that are done, in order. With the state among its columns the index covers
   // the query, so no row of the table is read.
   db.exec("CREATE INDEX IF NOT EXISTS runs_measures ON runs (job, level, kind, idx, state" + all +
@@ -66,7 +68,7 @@ void Database::migrate() {
       throw StorageError(path_.string() + " is of version " + std::to_string(found) + ", which is newer than " +
                          std::to_string(known) + "; use the newer talusd");
     for (auto step = migrations().begin() + found; step != migrations().end(); ++step) db.exec(step->second);
-    add_measure_columns(db);
+    add_number_columns(db);
     if (found < known) db.exec("PRAGMA user_version = " + std::to_string(known));
   });
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/clock.hpp"
+#include "study/quality_summary.hpp"
 #include "study/store.hpp"
 #include "support/measures.hpp"
 
@@ -58,6 +59,7 @@ struct Job : NewJob {
   std::optional<Milliseconds> started = {}, finished = {};
   std::int64_t done = 0, failed = 0;  ///< realizations
   std::int64_t replicates_ended = 0;  ///< done or failed
+  QualityCounts quality = {};         ///< of the realizations
   std::int64_t version = 1;           ///< grows with every change
 };
 

@@ -64,6 +64,8 @@ class Row {
       value = job_state(column.getString()).value();
     else if constexpr (std::is_same_v<T, RunState>)
       value = run_state(column.getString()).value();
+    else if constexpr (std::is_same_v<T, Verdict>)
+      value = verdict_of(column.getString()).value_or(Verdict::not_assessed);
     else if constexpr (std::is_same_v<T, std::string>)
       value = column.getString();
     else if constexpr (std::is_same_v<T, double>)
@@ -96,7 +98,7 @@ std::vector<Job> select_jobs(SQLite::Database& db, const std::string& condition,
       db,
       "SELECT number, id, process, subject, title, inputs, state, message, seed, planned, replicates, "
       "max_failed_share, may_stop_early, case_hash, particles, steps, created, updated, started, finished, done, "
-      "failed, replicates_ended, version FROM jobs WHERE " +
+      "failed, replicates_ended, sound, doubtful, invalid, version FROM jobs WHERE " +
           condition,
       values...);
   while (query.executeStep()) {
@@ -104,7 +106,9 @@ std::vector<Job> select_jobs(SQLite::Database& db, const std::string& condition,
     Row(query) >> job.number >> job.id >> job.process >> job.subject >> job.title >> job.inputs >> job.state >>
         job.message >> job.seed >> job.planned >> job.replicates >> job.max_failed_share >> job.may_stop_early >>
         job.case_hash >> job.particles >> job.steps >> job.created >> job.updated >> job.started >> job.finished >>
-        job.done >> job.failed >> job.replicates_ended >> job.version;
+        job.done >> job.failed >> job.replicates_ended >> job.quality.sound >> job.quality.doubtful >>
+        job.quality.invalid >> job.version;
+    job.quality.not_assessed = job.done - job.quality.sound - job.quality.doubtful;
   }
   return jobs;
 }
@@ -117,7 +121,9 @@ void visit_runs(SQLite::Database& db, Take take, const std::string& condition, c
   visit_numbers(any, [&](const char* key, const char*, auto) { numbers += key + std::string(", "); });
   SQLite::Statement query = statement(db,
                                       "SELECT job, level, kind, idx, state, attempt, crashes, " + numbers +
-                                          "digest, reason, exit_code, signal, log_tail FROM runs WHERE " + condition,
+                                          "digest, verdict, verdict_reasons, reason, exit_code, signal, log_tail "
+                                          "FROM runs WHERE " +
+                                          condition,
                                       values...);
   while (query.executeStep()) {
     Run run;
@@ -127,7 +133,8 @@ void visit_runs(SQLite::Database& db, Take take, const std::string& condition, c
     row >> run.job >> run.key >> run.state >> run.attempt >> run.crashes;
     result.index = run.key.index;
     visit_numbers(result, [&](const char*, const char*, auto& number) { row >> number; });
-    row >> result.digest >> failure.reason >> failure.exit_code >> failure.signal >> failure.log_tail;
+    row >> result.digest >> result.verdict >> result.objections >> failure.reason >> failure.exit_code >>
+        failure.signal >> failure.log_tail;
     if (run.state == RunState::done) run.result = std::move(result);
     if (run.state == RunState::failed) run.failure = std::move(failure);
     take(run);

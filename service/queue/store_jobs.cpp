@@ -161,7 +161,7 @@ std::int64_t Store::retry_failed(std::int64_t job, const Response& response) {
     if (changed > 0 || old.state == JobState::failed)
       change_job(db, job, now,
                  std::string(reopened) +
-                     ", failed = 0, replicates_ended = (SELECT COUNT(*) FROM runs "
+                     ", failed = 0, invalid = 0, replicates_ended = (SELECT COUNT(*) FROM runs "
                      "WHERE job = ?1 AND kind = 1 AND state = 'done')",
                  "TRUE");
     if (response) store_response(db, response(*one_job(db, job)), now);

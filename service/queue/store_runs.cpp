@@ -18,9 +18,11 @@ constexpr const char* next_job =
 const std::string is_current_claim =
     "job = ? AND level = ? AND kind = ? AND idx = ? AND attempt = ? AND state = 'leased'";
 
-void count_ended(SQLite::Database& db, const Claim& claim, const char* column, Milliseconds now) {
-  const std::string counted = claim.key.is_replicate() ? "replicates_ended" : column;
-  change_job(db, claim.study, now, counted + " = " + counted + " + 1", "TRUE");
+void count_ended(SQLite::Database& db, const Claim& claim, const char* column, Verdict verdict, Milliseconds now) {
+  const auto add_one = [](const std::string& counted) { return counted + " = " + counted + " + 1"; };
+  std::string changes = add_one(claim.key.is_replicate() ? "replicates_ended" : column);
+  if (!claim.key.is_replicate() && verdict != Verdict::not_assessed) changes += ", " + add_one(word(verdict));
+  change_job(db, claim.study, now, changes, "TRUE");
 }
 
 std::vector<double> column(SQLite::Database& db, const std::string& sql, std::int64_t job) {
@@ -88,12 +90,13 @@ bool Store::accept(const Claim& claim, const Record& result) {
   return db_.write([&](SQLite::Database& db) {
     std::string numbers;
     visit_numbers(result, [&](const char* key, const char*, auto) { numbers += key + std::string(" = ?, "); });
-    SQLite::Statement update(db, "UPDATE runs SET state = 'done', " + numbers + "digest = ? WHERE " + is_current_claim);
+    SQLite::Statement update(db, "UPDATE runs SET state = 'done', " + numbers +
+                                     "digest = ?, verdict = ?, verdict_reasons = ? WHERE " + is_current_claim);
     Binder values(update);
     visit_numbers(result, [&](const char*, const char*, auto value) { values << value; });
-    values << result.digest << claim;
+    values << result.digest << result.verdict << result.objections << claim;
     if (update.exec() != 1) return false;
-    count_ended(db, claim, "done", clock_());
+    count_ended(db, claim, "done", result.verdict, clock_());
     return true;
   });
 }
@@ -105,7 +108,8 @@ bool Store::fail(const Claim& claim, const Failure& failure) {
                                 "signal = ?, log_tail = ? WHERE " +
                                     is_current_claim,
                                 failure.reason, failure.exit_code, failure.signal, failure.log_tail, claim);
-    if (changed == 1) count_ended(db, claim, "failed", clock_());
+    if (changed == 1)
+      count_ended(db, claim, "failed", failed_record(claim.key.index, failure.reason).verdict, clock_());
     return changed == 1;
   });
 }
@@ -216,8 +220,7 @@ RecordSource Store::records(std::int64_t job, RunKind kind) {
       visit_runs(
           db,
           [&](const Run& run) {
-            Record record = run.result.value_or(Record{.index = run.key.index});
-            if (run.failure) record.reason = run.failure->reason;
+            Record record = run.result ? *run.result : failed_record(run.key.index, run.failure->reason);
             if (std::isnan(record.captured_variance)) record.captured_variance = captured_variance;
             take(record);
           },
@@ -232,6 +235,7 @@ MeasureSample Store::measure_sample(const Job& job, const Measure& measure,
     const std::string key = measure.key;
     MeasureSample sample;
     sample.failed = job.failed;
+    sample.quality = job.quality;
     sample.complete = job.done + job.failed == job.planned;
     // The index holds the measures of all runs that are done, in order, and nothing else: a narrow scan.
     const std::string done = "SELECT " + key +
@@ -246,16 +250,21 @@ MeasureSample Store::measure_sample(const Job& job, const Measure& measure,
     }
     StopRule rule(stop_half_width);
     sample.failed = 0;
-    SQLite::Statement query = statement(db,
-                                        "SELECT idx, iif(state = 'done', influence_zone_m, NULL), " + key +
-                                            " FROM runs WHERE job = ? AND level = 0 AND kind = 0 AND state IN "
-                                            "('done', 'failed') ORDER BY idx",
-                                        job.number);
+    sample.quality = {};
+    SQLite::Statement query =
+        statement(db,
+                  "SELECT idx, iif(state = 'done', influence_zone_m, NULL), verdict, reason, " + key +
+                      " FROM runs WHERE job = ? AND level = 0 AND kind = 0 AND state IN "
+                      "('done', 'failed') ORDER BY idx",
+                  job.number);
     while (!rule.size() && query.executeStep()) {
       std::int64_t index = 0;
       std::optional<double> influence_zone, value;
-      Row(query) >> index >> influence_zone >> value;
+      std::string reason;
+      Record record{.done = true};
+      Row(query) >> index >> influence_zone >> record.verdict >> reason >> value;
       rule.add(index, influence_zone);
+      sample.quality.add(influence_zone ? record : failed_record(index, reason));
       if (!influence_zone)
         ++sample.failed;
       else if (value)

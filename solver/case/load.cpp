@@ -10,7 +10,8 @@
 namespace talus {
 namespace {
 
-constexpr Names<Placement> placements[] = {{"cells", Placement::cells}, {"nodes", Placement::nodes}};
+constexpr Names<Placement> placements[] = {
+    {"cells", Placement::cells}, {"whole_cells", Placement::whole_cells}, {"nodes", Placement::nodes}};
 
 }  // namespace
 
@@ -24,8 +25,12 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
                       "thinnest flow / 10 or finer; [Z20] uses 0.1 and 0.2"});
   in.choice(
       "particle_placement", m.placement, placements,
-      {"cells: particles at the centres of square cells; nodes: at lattice nodes, outline edges included, with the "
-       "wall line half a spacing behind the bed.",
+      {"cells: square cells cut at the outlines, a particle of the cut cell's mass at its centroid, so that the mass "
+       "is "
+       "that of the outlines; whole_cells: particles of equal mass at the centres of cells, none nearer than half a "
+       "spacing to the bed; nodes: the same at lattice nodes, outline edges included, with the wall line half a "
+       "spacing "
+       "behind the bed.",
        "nodes as in [Z20] Fig. 3"});
   in.integer("max_particles", m.max_particles, {"", 1.0, 1e8},
              {"Refuse to fill more soil and wall particles than this.", "memory; see talus validate"});
@@ -99,6 +104,9 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   out.warnings = name_origins(std::move(out.warnings), applied);
   out.hash = case_hash(out.resolved);
   out.bed_source = origins.bed.source;
+  Json endless = out.resolved;
+  for (const char* key : {"end_s", "snapshot_times_s"}) endless["time"].erase(key);
+  out.hash_without_end = case_hash(endless);
   return out;
 }
 
@@ -127,7 +135,11 @@ Plan make_plan(const LoadedCase& loaded, std::uint64_t seed, const std::string& 
     throw ConfigError(
         "/study/stop_when_ci_half_width_below_m",
         "a Latin hypercube is one sample of a fixed size and cannot stop early; use monte_carlo or remove this");
-  return {.title = c.title, .case_hash = loaded.hash, .version = version, .seed = seed, .study = c.study};
+  return {.title = c.title,
+          .of = {.hash = loaded.hash, .hash_without_end = loaded.hash_without_end, .end = c.model.time.end},
+          .version = version,
+          .seed = seed,
+          .study = c.study};
 }
 
 }  // namespace talus

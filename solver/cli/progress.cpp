@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "study/quality_summary.hpp"
 #include "support/measures.hpp"
 
 namespace talus::cli {
@@ -91,7 +92,8 @@ int terminal_width() {
 }
 
 std::string study_report(const Json& study) {
-  return summary_table(study) + "\nrun-out distance [m] (influence_zone_m)\n" +
+  const std::string quality = study.contains("quality") ? quality_line(study.at("quality")) : "";
+  return (quality.empty() ? "" : quality + "\n") + summary_table(study) + "\nrun-out distance [m] (influence_zone_m)\n" +
          text_histogram(study.at("quantities").at(measure_table[0].key), 80);
 }
 

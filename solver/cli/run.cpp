@@ -86,15 +86,20 @@ Exit run(const RunOptions& options) {
   LoadedCase loaded = load_case(options.case_file, options.overrides);
   if (!options.study_worker) print_warnings(loaded.warnings);
   const double end = loaded.value.model.time.end;
-  const std::uint64_t seed = choose_seed(options.seed, loaded, options.out, options.resume);
+  const std::uint64_t seed = choose_seed(options.seed, loaded, options.out);
 
   ProgressLine progress(verbose);
+  const auto say_continued = [&](double time) {
+    if (!options.study_worker) std::cerr << "continues from t = " << time << " s\n";
+  };
   const RunHooks hooks{.stop_requested = stop_requested,
-                       .show_progress = [&](const Simulation& s, double elapsed) { progress.show(s, end, elapsed); }};
+                       .show_progress = [&](const Simulation& s, double elapsed) { progress.show(s, end, elapsed); },
+                       .continued = say_continued};
   catch_stop_signals(!options.study_worker);
   const RunOutcome outcome = run_realization(std::move(loaded),
                                              {.directory = options.out,
                                               .resume = options.resume,
+                                              .keep_final_state = !options.study_worker,
                                               .seed = seed,
                                               .realization = options.realization,
                                               .perturbation = options.perturbation,
@@ -104,8 +109,7 @@ Exit run(const RunOptions& options) {
   progress.clear();
   if (!outcome.finished) {
     if (!options.study_worker)
-      std::cerr << "stopped at t = " << outcome.time
-                << " s with a checkpoint; go on with the same command and --resume\n";
+      std::cerr << "stopped at t = " << outcome.time << " s with a checkpoint; the same command continues it\n";
     return Exit::interrupted;
   }
   if (options.json) std::cout << outcome.document;
@@ -136,7 +140,8 @@ void add_run(CLI::App& app, Action& action) {
           "depend on them")
       ->check(CLI::Range(1, 4096));
   add_overrides(*verb, options->overrides);
-  verb->add_flag("--resume", options->resume, "Continue from the checkpoint in --out");
+  verb->add_flag("--resume", options->resume,
+                 "Accept a finished run in --out; with a later time.end_s, continue one that still moved");
   verb->add_flag("--figures", options->figures, "Draw profiles at the snapshot times");
   verb->add_flag("--json", options->json, "Print result.json on stdout");
   set_footer(*verb, {exit_text::bad_case, exit_text::diverged, exit_text::io, exit_text::stopped},

@@ -36,8 +36,7 @@ Tables tables_from_runs(const fs::path& directory) {
   if (!plan) throw IoError(directory.string() + " does not hold a study: there is no plan.json");
   const auto records = [&](RunKind kind) {
     std::vector<Record> all;
-    for (auto& [index, record] : read_records({directory}, kind, {.seed = plan->seed, .case_hash = plan->case_hash}))
-      all.push_back(std::move(record));
+    for (auto& [index, record] : read_records({directory}, kind, identity(*plan))) all.push_back(std::move(record));
     return all;
   };
   return {.plan = *plan, .runs = records(RunKind::realization), .floor = records(RunKind::replicate)};

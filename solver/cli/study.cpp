@@ -42,7 +42,7 @@ struct StudyOptions {
   int threads = 1;
   std::string executor = "local";
   fs::path slurm;  ///< its configuration; empty: the defaults
-  bool json = false, retry_failed = false, no_figures = false, prepare = false;
+  bool json = false, resume = false, retry_failed = false, no_figures = false, prepare = false;
 };
 
 /// Progress on stderr: one line that is redrawn on a terminal, a plain line now and then elsewhere.
@@ -114,6 +114,7 @@ RunStudyOptions run_options(const StudyOptions& options, const Plan& plan, Repor
     run.first = options.range.front();
     run.last = options.range.back() + 1;
   }
+  run.resume = options.resume;
   run.retry_failed = options.retry_failed;
   run.interrupts = [] { return stop_requested() ? 1 : 0; };
   run.report = [&reporter](const Progress& progress) { reporter.show(progress); };
@@ -197,6 +198,8 @@ void add_study(CLI::App& app, Action& action) {
       ->expected(2)
       ->type_name("FIRST LAST")
       ->check(CLI::NonNegativeNumber);
+  verb->add_flag("--resume", options->resume,
+                 "Also continue a study of an earlier time.end_s: the runs that had not come to rest are run again");
   verb->add_flag("--retry-failed", options->retry_failed, "Run the failed realizations again");
   verb->add_flag("--no-figures", options->no_figures, "Draw no figures at the end");
   verb->add_flag("--prepare", options->prepare, "Only write plan and case, for others to run (talusd does)");

@@ -27,6 +27,7 @@ struct ValidateOptions {
 /// What a run of the case takes.
 struct Demand {
   std::size_t soil = 0, wall = 0;
+  SlideMass mass;
   double step = 0.0;  ///< [s]
   double steps = 0.0;
   double memory = 0.0;  ///< [bytes]
@@ -39,6 +40,7 @@ Demand measure(const Case& c) {
   const ParticlePlan plan = plan_particles(c.model);
   d.soil = plan.soil.size();
   d.wall = plan.walls.size();
+  d.mass = slide_mass(c.model, plan);
   d.step = first_step(c.model);
   d.steps = std::ceil(c.model.time.end / d.step * (1.0 - 1e-12));
   d.memory = run_memory(static_cast<double>(d.soil + d.wall));
@@ -94,10 +96,14 @@ Json slide_json(const GroundReport& r, double dx) {
 }
 
 Json to_json(const LoadedCase& loaded, const Demand& d) {
-  Json out = {{"valid", true},           {"title", loaded.value.title},
-              {"hash", loaded.hash},     {"particles", {{"soil", d.soil}, {"wall", d.wall}}},
-              {"step_s", d.step},        {"steps", d.steps},
-              {"memory_bytes", d.memory}};
+  Json out = {{"valid", true},
+              {"title", loaded.value.title},
+              {"hash", loaded.hash},
+              {"particles", {{"soil", d.soil}, {"wall", d.wall}}},
+              {"step_s", d.step},
+              {"steps", d.steps},
+              {"memory_bytes", d.memory},
+              {"mass_kg_m", {{"filled", d.mass.filled}, {"outline", d.mass.outline}}}};
   const Model& model = loaded.value.model;
   const GroundReport report = report_ground(loaded);
   out["ground"] = to_json(report, model.terrain);
@@ -108,8 +114,8 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
 }
 
 void print_end(const char* name, bool wall, Vec2 end, double wall_top) {
-  std::printf("%-18s %s at (%g, %g)", name, wall ? "wall" : "open", end.x, end.y);
-  if (wall) std::printf(" up to y = %g m", wall_top);
+  std::printf("%-18s %s at (%.10g, %.10g)", name, wall ? "wall" : "open", end.x, end.y);
+  if (wall) std::printf(" up to y = %.10g m", wall_top);
   std::printf("\n");
 }
 
@@ -125,8 +131,8 @@ void print_ground(const GroundReport& r, const Model& model) {
   const Terrain& t = model.terrain;
   if (!t.closed) print_end("left end", t.left_wall, t.bed.front(), t.wall_top);
   if (!t.closed) print_end("right end", t.right_wall, t.bed.back(), t.wall_top);
-  std::printf("slide              x = %g to %g m, y = %g to %g m, at most %.3g m thick (%.3g spacings)\n", r.slide.lo.x,
-              r.slide.hi.x, r.slide.lo.y, r.slide.hi.y, r.thickness, r.thickness / model.dx);
+  std::printf("slide              x = %.10g to %.10g m, y = %.10g to %.10g m, at most %.3g m thick (%.3g spacings)\n",
+              r.slide.lo.x, r.slide.hi.x, r.slide.lo.y, r.slide.hi.y, r.thickness, r.thickness / model.dx);
   std::printf("direction          to the %s\n", r.goes_right ? "right" : "left");
 }
 
@@ -134,6 +140,8 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
   std::printf("%s\n", loaded.value.title.c_str());
   print_ground(report_ground(loaded), loaded.value.model);
   std::printf("particles          %zu soil + %zu wall\n", d.soil, d.wall);
+  std::printf("mass               %.0f kg/m, %+.2f %% of the outlines'\n", d.mass.filled,
+              100.0 * (d.mass.filled / d.mass.outline - 1.0));
   std::printf("time step          %.3g s%s\n", d.step,
               loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");
   std::printf("steps              about %.0f to %.4g s\n", d.steps, loaded.value.model.time.end);

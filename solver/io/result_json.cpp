@@ -32,6 +32,11 @@ class ObjectIo {
   ObjectIo object(const char* key) {
     return {member(key), reading_ ? Direction::read : Direction::write, file_, pointer_ + "/" + key};
   }
+  /// For an object that earlier versions did not write.
+  template <class Transfer>
+  void object_or_skip(const char* key, Transfer&& transfer) {
+    if (!reading_ || node_.contains(key)) transfer(object(key));
+  }
   void number(const char* key, double& value, double least = unbounded) {
     transfer(key, value, &Json::is_number, "a number", least);
     if (reading_ && value < least) fail(key, "a number", least);
@@ -48,6 +53,13 @@ class ObjectIo {
   }
   void boolean(const char* key, bool& value) { transfer(key, value, &Json::is_boolean, "true or false"); }
   void text(const char* key, std::string& value) { transfer(key, value, &Json::is_string, "a text"); }
+  /// NaN where an earlier version did not write the key.
+  void number_or_nan(const char* key, double& value) {
+    if (!reading_ || node_.contains(key))
+      number(key, value);
+    else
+      value = std::numeric_limits<double>::quiet_NaN();
+  }
   /// For a key that earlier versions did not write; empty without it.
   void text_or_empty(const char* key, std::string& value) {
     if (!reading_ || node_.contains(key))
@@ -66,6 +78,26 @@ class ObjectIo {
     const auto* const found = std::ranges::find(ending_names, name);
     if (found == std::end(ending_names)) fail(key, "end_time, at_rest or interrupted");
     value = static_cast<Ending>(found - ending_names);
+  }
+  void verdict(const char* key, Verdict& value) {
+    std::string name = word(value);
+    text(key, name);
+    const std::optional<Verdict> known = verdict_of(name);
+    if (!known) fail(key, "sound, doubtful, invalid or not_assessed");
+    value = *known;
+  }
+  bool lacks(const char* key) const { return reading_ && !node_.contains(key); }
+  /// A list of objects; each(object, element) transfers one.
+  template <class T, class Each>
+  void list(const char* key, std::vector<T>& elements, const Each& each) {
+    Json& all = member(key);
+    if (!reading_) all = Json(Json::array_t(elements.size()));
+    if (!all.is_array()) fail(key, "a list");
+    elements.resize(all.size());
+    for (std::size_t k = 0; k < elements.size(); ++k)
+      each(ObjectIo(all[k], reading_ ? Direction::read : Direction::write, file_,
+                    pointer_ + "/" + key + "/" + std::to_string(k)),
+           elements[k]);
   }
   void optional(const char* key, std::optional<double>& value) {
     or_null(key, value, [&](double& x) { number(key, x); });
@@ -109,9 +141,36 @@ class ObjectIo {
   std::string pointer_;
 };
 
+void transfer_reason(ObjectIo node, QualityReason& reason) {
+  node.text("check", reason.check);
+  node.verdict("verdict", reason.verdict);
+  node.number("value", reason.value);
+  node.number("limit", reason.limit);
+  node.text("message", reason.message);
+}
+
+void transfer_warning(ObjectIo node, Fault& warning) {
+  node.text("pointer", warning.pointer);
+  node.text("message", warning.message);
+}
+
+/// Results of version 0.1.0 have neither quality nor warnings.
+void transfer_quality(ObjectIo& root, RunResult& result) {
+  if (!root.lacks("quality")) {
+    ObjectIo quality = root.object("quality");
+    quality.verdict("verdict", result.quality.verdict);
+    quality.list("reasons", result.quality.reasons, transfer_reason);
+  }
+  if (!root.lacks("warnings")) root.list("warnings", result.warnings, transfer_warning);
+}
+
 /// Every member of the document, in its order.
 void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
-  for (const Measure& measure : measure_table) root.number(measure.key, result.measures.*measure.member);
+  for (const Measure& measure : measure_table)
+    if (&measure == measure_table.data())
+      root.number(measure.key, result.measures.*measure.member);
+    else
+      root.number_or_nan(measure.key, result.measures.*measure.member);
   ObjectIo particles = root.object("particles");
   particles.integer("soil", result.soil);
   particles.integer("wall", result.wall);
@@ -125,10 +184,15 @@ void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
   root.integer("penetrated", result.penetrated);
   root.integer("left_domain", result.left_domain);
   root.boolean("at_rest", result.at_rest);
+  root.object_or_skip("mass_kg_m", [&](ObjectIo mass) {
+    mass.number("filled", result.mass.filled, 0.0);
+    mass.number("outline", result.mass.outline, 0.0);
+  });
   root.ending("ending", result.ending);
   root.text_or_empty("backend", result.backend);
   root.text_or_empty("simd", result.simd);
   root.digest("digest", result.digest);
+  transfer_quality(root, result);
 
   ObjectIo field = root.object("field");
   double mean_phi_deg = degrees(result.field.mean_phi);

@@ -2,6 +2,7 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -14,6 +15,7 @@
 #include "support/files.hpp"
 #include "support/output_directory.hpp"
 #include "support/seed.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
@@ -31,6 +33,14 @@ std::string utc_now() {
   return text;
 }
 
+/// Of the axes along which the field varies [m]; unset where it does not vary, or is averaged over cells.
+std::optional<double> shortest_correlation(const std::optional<FieldSpec>& field, const std::vector<double>& xi) {
+  if (!field || field->cell_average || field->sigma == 0.0) return std::nullopt;
+  if (std::ranges::all_of(xi, [](double x) { return x == 0.0; })) return std::nullopt;
+  if (!field->along_y()) return field->ell_x;
+  return field->along_x() ? std::min(field->ell_x, field->ell_y) : field->ell_y;
+}
+
 /// The finished run of a directory, if it is the one that is asked for.
 RunOutcome finished_run(const fs::path& directory, const RunRequest& request) {
   const fs::path file = directory / "result.json";
@@ -42,11 +52,10 @@ RunOutcome finished_run(const fs::path& directory, const RunRequest& request) {
 
 }  // namespace
 
-std::uint64_t choose_seed(std::optional<std::uint64_t> given, const LoadedCase& loaded, const fs::path& directory,
-                          bool resume) {
+std::uint64_t choose_seed(std::optional<std::uint64_t> given, const LoadedCase& loaded, const fs::path& directory) {
   if (given) return *given;
   const fs::path earlier = directory / "case.resolved.json";
-  if (resume && fs::exists(earlier)) {
+  if (fs::exists(earlier)) {
     const auto document = nlohmann::json::parse(read_file(earlier, max_case_bytes), nullptr, false);
     const nlohmann::json::json_pointer seed("/study/seed");
     if (!document.is_discarded() && document.contains(seed) && document[seed].is_number_unsigned())
@@ -68,20 +77,32 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
   ThreadChoice threads(plan.soil.size() + plan.walls.size(), omp_get_max_threads(), request.threads);
   omp_set_num_threads(threads.count());
   const Strength soil = strength(problem.model, problem.field, problem.study, plan, identity);
-  OutputDirectory out(request.directory, OutputKind::run, loaded.hash, request.resume);
+  const CaseIdentity of{loaded.hash, loaded.hash_without_end, problem.model.time.end};
+  OutputDirectory out(request.directory, OutputKind::run, of, request.resume);
   if (out.finished()) return finished_run(out.path(), request);
 
   const Provenance provenance{request.version, request.seed,  request.realization, request.perturbation,
                               loaded.hash,     problem.title, TALUS_COMPILER,      utc_now()};
-  const CheckpointHeader header{request.version, loaded.hash, request.seed, request.realization, request.perturbation};
+  const CheckpointHeader header{request.version, loaded.hash_without_end, request.seed, request.realization,
+                                request.perturbation};
   const fs::path checkpoint_file = out.path() / "checkpoint.h5";
-  if (!request.resume) fs::remove(checkpoint_file);  // of an unfinished run that is being started over
-  const bool resumed = request.resume && fs::exists(checkpoint_file);
+  const bool resumed = fs::exists(checkpoint_file);
+  if (out.extends()) {
+    const bool done = fs::exists(out.path() / "result.json");
+    if (done && !resumed)
+      throw IoError(out.path().string() + " holds a run that came to rest before its end, t = " +
+                    to_text(out.earlier_end()) + " s: there is nothing to continue");
+  }
   Simulation simulation(problem.model, plan, soil.properties);
   if (resumed) {
     const CheckpointState state = read_checkpoint(checkpoint_file, header);
     simulation.restore(state);
     earlier = state.wall_clock;
+    hooks.continued(simulation.time());
+  }
+  if (out.extends()) {
+    out.reopen();
+    fs::remove(out.path() / "result.json");  // of the earlier end
   }
   write_file_atomically(out.path() / "case.resolved.json", loaded.resolved.dump(2) + "\n");
   Recorder recorder(out.path(), simulation, problem.model.time, resumed);
@@ -121,10 +142,18 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
   outcome.result.wall_clock = earlier + elapsed();
   outcome.result.threads = threads.most_used();
   outcome.result.field = soil.summary;
+  RunFacts facts = simulation.facts();
+  facts.correlation_length = shortest_correlation(problem.field, soil.xi);
+  outcome.result.quality = assess(facts);
+  outcome.result.warnings = loaded.warnings;
   outcome.document = result_json(outcome.result, provenance).dump(2) + "\n";
   write_file_atomically(out.path() / "result.json", outcome.document);
+  const bool moves = outcome.result.ending == Ending::end_time && !outcome.result.at_rest;
+  if (request.keep_final_state && moves)
+    write_checkpoint_now();
+  else
+    fs::remove(checkpoint_file);
   out.mark_finished();
-  fs::remove(checkpoint_file);
   return outcome;
 }
 

@@ -43,7 +43,8 @@ CheckpointState Simulation::state() const {
                         max_speed_,
                         max_acceleration_,
                         stored(rest_rule_.slow_since()),
-                        stored(neighbours_.moved_since_sort())};
+                        stored(neighbours_.moved_since_sort()),
+                        peak_density_rise_};
   s.integers["material"].assign(soil_.material.begin(), soil_.material.end());
   s.integers["id"].assign(soil_.id.begin(), soil_.id.end());
   s.integers["penetrated"].assign(contact_.lost_ids().begin(), contact_.lost_ids().end());
@@ -84,12 +85,13 @@ void Simulation::restore(const CheckpointState& state) {
   steps_ = counters[1];
   evaluations_ = counters[2];
 
-  const auto& scalars = array_of(state.reals, "scalars", 6);
+  const auto& scalars = array_of(state.reals, "scalars", 7);
   time_ = scalars[0];
   peak_speed_ = scalars[1];
   max_speed_ = scalars[2];
   max_acceleration_ = scalars[3];
   rest_rule_.restore(restored(scalars[4]));
+  peak_density_rise_ = scalars[6];
   neighbours_.restore(restored(scalars[5]), soil_, walls_, *flow_);
 }
 

@@ -51,6 +51,71 @@ HistoryRow Simulation::history_row() const {
   return {time_, steps_, farthest(soil_) - left, centre_of_mass(soil_).x - left, kinetic_energy(soil_), max_speed_};
 }
 
+/// Largest rho/rho0 - 1 now.
+double Simulation::density_rise() const {
+  double rise = 0.0;
+#pragma omp parallel for schedule(static) reduction(max : rise)
+  for (std::size_t i = 0; i < soil_.n_active; ++i) {
+    const double rho0 = constants().soils[static_cast<std::size_t>(soil_.material[i])].eos.rho0;
+    rise = std::max(rise, soil_.rho[i] / rho0 - 1.0);
+  }
+  return rise;
+}
+
+/// By how much the front would still advance, to either side, if every particle slid on flat ground from its present
+/// speed: v^2/(2 |g| tan(phi)). Particles without friction are passed over. [m]
+double Simulation::run_on() const {
+  double left = 1e300, right = -1e300, left_then = 1e300, right_then = -1e300;
+  for (std::size_t i = 0; i < soil_.n_active; ++i) {
+    const Vec2 v = soil_.velocity(i);
+    left = std::min(left, soil_.x[i]);
+    right = std::max(right, soil_.x[i]);
+    if (soil_.tan_phi[i] <= 0.0) continue;
+    const double way = norm2(v) / (2.0 * norm(model_.g) * soil_.tan_phi[i]);
+    left_then = std::min(left_then, soil_.x[i] - (v.x < 0.0 ? way : 0.0));
+    right_then = std::max(right_then, soil_.x[i] + (v.x > 0.0 ? way : 0.0));
+  }
+  return std::max({0.0, right_then - right, left - left_then});
+}
+
+/// Particles that are nearer than a spacing to an open end of the bed, and did not start there.
+std::int64_t Simulation::at_open_end() const {
+  const Terrain& terrain = model_.terrain;
+  if (terrain.closed) return 0;
+  const double left = terrain.left_wall ? -1e300 : terrain.bed.front().x + model_.dx;
+  const double right = terrain.right_wall ? 1e300 : terrain.bed.back().x - model_.dx;
+  std::int64_t count = 0;
+  for (std::size_t i = 0; i < soil_.n_active; ++i) {
+    const bool at_end = soil_.x[i] < left || soil_.x[i] > right;
+    if (at_end && norm(soil_.position(i) - starts_[soil_.id[i]]) > model_.dx) ++count;
+  }
+  return count;
+}
+
+RunFacts Simulation::facts() const {
+  RunFacts f;
+  f.mach = peak_speed_ / constants().c_s;
+  f.density_rise = std::max(peak_density_rise_, density_rise());
+  f.soil = static_cast<std::int64_t>(soil_.size());
+  f.penetrated = contact_.lost();
+  f.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
+  f.at_open_end = at_open_end();
+  f.dx = model_.dx;
+  f.time = time_;
+  const bool has_strength = std::ranges::any_of(soil_.tan_phi, [](double t) { return t > 0.0; }) ||
+                            std::ranges::any_of(soil_.c, [](double c) { return c > 0.0; });
+  if (has_strength) {  // otherwise it never comes to rest
+    f.rms_speed = rms_speed(soil_) / std::sqrt(norm(model_.g) * fall_height(model_));
+    f.run_on = run_on();
+  }
+  std::vector<Vec2> starts;
+  for (std::size_t id = 0; id < soil_.size(); ++id) starts.push_back(starts_[static_cast<std::int32_t>(id)]);
+  f.rows = rows_across(starts, model_.dx);
+  if (model_.time.fixed_step) f.courant = *model_.time.fixed_step * bounds_.c / bounds_.h;
+  f.courant_limit = courant_limit(model_.numerics.integrator);
+  return f;
+}
+
 RunResult Simulation::result() const {
   RunResult r;
   r.measures = measure_fronts(soil_, model_.terrain.left_boundary, model_.dx);
@@ -65,6 +130,7 @@ RunResult Simulation::result() const {
   r.penetrated = contact_.lost();
   r.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
   r.at_rest = max_speed_ < 0.01 * std::sqrt(norm(model_.g) * fall_height(model_));
+  r.mass = {total_mass(soil_), mass_of(model_.slide, model_.materials)};
   r.digest = digest(soil_);
   r.backend = backend();
   r.simd = simd();

@@ -13,7 +13,7 @@
 namespace talus {
 namespace {
 
-constexpr std::int64_t rest_interval = 20;  ///< steps between two observations of the rest rule
+constexpr std::int64_t observation_interval = 20;  ///< steps between two observations of rest and density
 
 /// Adds up the times of parts of a run.
 StageTimes operator+(const StageTimes& a, const StageTimes& b) {
@@ -52,7 +52,10 @@ void Simulation::step(double until) {
   max_acceleration_ = extrema.max_acceleration;
   peak_speed_ = std::max(peak_speed_, max_speed_);
   neighbours_.advance(extrema);
-  if (rest_rule_.active() && steps_ % rest_interval == 0) rest_rule_.observe(time_, rms_speed(soil_));
+  if (steps_ % observation_interval == 0) {
+    if (rest_rule_.active()) rest_rule_.observe(time_, rms_speed(soil_));
+    peak_density_rise_ = std::max(peak_density_rise_, density_rise());
+  }
   retire_departed(extrema);
   watch.lap(times_.update);
 }

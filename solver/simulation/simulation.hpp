@@ -6,6 +6,7 @@
 
 #include "integrate/flow.hpp"
 #include "simulation/checkpoint_state.hpp"
+#include "simulation/checks.hpp"
 #include "simulation/frame.hpp"
 #include "simulation/ground_contact.hpp"
 #include "simulation/memory.hpp"
@@ -45,8 +46,10 @@ class Simulation {
   /// All particles in order of id.
   Frame frame() const;
   HistoryRow history_row() const;
-  /// Everything but wall clock, threads and field, which the caller knows.
+  /// Everything but wall clock, threads, field and quality, which the caller knows.
   RunResult result() const;
+  /// What the checks look at, but for the random field, which the caller knows.
+  RunFacts facts() const;
 
   /// Wall clock spent in each stage of the steps so far.
   StageTimes times() const;
@@ -63,6 +66,9 @@ class Simulation {
   [[noreturn]] void report_divergence() const;
   void meet_the_ground(StepExtrema& extrema);
   void retire_departed(const StepExtrema& extrema);
+  double density_rise() const;
+  double run_on() const;
+  std::int64_t at_open_end() const;
 
   Model model_;
   Soil soil_;
@@ -73,10 +79,11 @@ class Simulation {
   GroundContact contact_;
   RestRule rest_rule_;
   StepBounds bounds_;
-  double time_ = 0.0;              ///< [s]
-  double peak_speed_ = 0.0;        ///< over the run [m/s]
-  double max_speed_ = 0.0;         ///< after the last step [m/s]
-  double max_acceleration_ = 0.0;  ///< of the last evaluation [m/s2]
+  double time_ = 0.0;               ///< [s]
+  double peak_speed_ = 0.0;         ///< over the run [m/s]
+  double peak_density_rise_ = 0.0;  ///< largest rho/rho0 - 1 observed [-]
+  double max_speed_ = 0.0;          ///< after the last step [m/s]
+  double max_acceleration_ = 0.0;   ///< of the last evaluation [m/s2]
   std::int64_t steps_ = 0;
   std::int64_t evaluations_ = 0;  ///< of the right-hand side
   StageTimes times_;

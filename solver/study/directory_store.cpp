@@ -18,6 +18,10 @@ std::optional<RunKey> run_of_file(const std::string& name, const std::string& en
 
 }  // namespace
 
+StudyIdentity identity(const Plan& plan) {
+  return {.seed = plan.seed, .case_hash = plan.of.hash, .earlier = plan.earlier};
+}
+
 Records read_records(const StudyPaths& paths, RunKind kind, const StudyIdentity& identity) {
   Records records;
   if (!fs::exists(paths.results(kind))) return records;  // nothing has been run yet
@@ -25,7 +29,7 @@ Records read_records(const StudyPaths& paths, RunKind kind, const StudyIdentity&
     const std::string name = entry.path().filename().string();
     if (const auto failed = run_of_file(name, ".failed.json", kind)) {
       if (auto reason = read_failure(entry.path()))
-        records.try_emplace(failed->index, Record{.index = failed->index, .reason = std::move(*reason)});
+        records.try_emplace(failed->index, failed_record(failed->index, std::move(*reason)));
     } else if (const auto done = run_of_file(name, ".json", kind)) {
       // Where a run has failed too, it was retried: the result counts.
       if (auto record = read_result(entry.path(), *done, identity)) records[done->index] = std::move(*record);
@@ -37,7 +41,7 @@ Records read_records(const StudyPaths& paths, RunKind kind, const StudyIdentity&
 DirectoryStore::DirectoryStore(StudyPaths paths, const Plan& plan, std::int64_t first, std::int64_t end)
     : info_{.name = {},
             .paths = std::move(paths),
-            .identity = {.seed = plan.seed, .case_hash = plan.case_hash},
+            .identity = identity(plan),
             .spec = plan.study,
             .first = first,
             .end = end},
@@ -99,7 +103,7 @@ bool DirectoryStore::accept(const Claim& claim, const Record& record) {
 
 bool DirectoryStore::fail(const Claim& claim, const Failure& failure) {
   if (!end_claim(claim)) return false;
-  records(claim.key.kind)[claim.key.index] = {.index = claim.key.index, .reason = failure.reason};
+  records(claim.key.kind)[claim.key.index] = failed_record(claim.key.index, failure.reason);
   return true;
 }
 

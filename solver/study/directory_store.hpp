@@ -9,6 +9,9 @@
 
 namespace talus {
 
+/// Which runs belong to the study of a plan.
+StudyIdentity identity(const Plan& plan);
+
 /// Records by index.
 using Records = std::map<std::int64_t, Record>;
 

@@ -78,7 +78,10 @@ bool Engine::take_over(const Claim& claim) {
   try {
     for (const fs::path& file : {info.paths.result(claim.key), info.paths.work(claim.key) / "result.json"})
       if (const auto record = read_result(file, claim.key, info.identity)) {
-        record_done(claim, *record, Kind::taken_over);
+        if (record->done)
+          record_done(claim, *record, Kind::taken_over);
+        else
+          record_failed(claim, {}, record->reason);
         return true;
       }
   } catch (const ForeignResult& e) {
@@ -128,6 +131,7 @@ void Engine::record(UnderWay& run) {
     }
   }
   end.has_result = result.has_value();
+  if (result && !result->done) end.invalid = result->reason;
   const Outcome outcome = outcome_of(end);
   switch (outcome.action) {
     case Action::done:

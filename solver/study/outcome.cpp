@@ -38,7 +38,10 @@ Outcome outcome_of(const RunEnd& end) {
                     : "stopped from outside (exit code " + std::to_string(code) + ")";
     return crashed(end, Action::failed, what, said);
   }
-  if (code == Exit::ok && end.has_result) return {.action = Action::done};
+  if (code == Exit::ok && end.has_result) {
+    if (end.invalid.empty()) return {.action = Action::done};
+    return {.action = Action::failed, .reason = end.invalid};
+  }
   if (code == Exit::ok) return crashed(end, Action::failed, "it ended well but left no readable result", said);
   if (code == Exit::usage || code == Exit::bad_case)
     return {.action = Action::abort, .bad_case = true, .reason = "refuses the case" + said};

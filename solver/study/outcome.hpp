@@ -15,6 +15,7 @@ inline constexpr int default_attempts = 5;
 struct RunEnd {
   executor::Ended ended;
   bool has_result = false;    ///< a whole result.json of this very run is there
+  std::string invalid = {};   ///< why that result is invalid; empty: it is not
   bool wrong_result = false;  ///< a result.json of another run or study is there
   bool stopping = false;      ///< the front end has asked all runs to stop
   bool disk_full = false;
@@ -45,6 +46,7 @@ struct Outcome {
 /// |-------------------------------------------------|--------------------------------------------------|
 /// | preempted, lost with its node                   | retry, not counted                               |
 /// | exit code 0 with its result                     | done                                             |
+/// | exit code 0 with an invalid result              | failed: it would end the same way again          |
 /// | the result of another run                       | abort                                            |
 /// | time limit (also SIGXCPU)                       | failed                                           |
 /// | killed or stopped while the front end stops     | retry, not counted                               |

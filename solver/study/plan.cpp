@@ -4,6 +4,7 @@
 
 #include "support/files.hpp"
 #include "support/json.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
@@ -17,7 +18,10 @@ Json to_json(const Plan& plan) {
   return {{"program", "talus"},
           {"version", plan.version},
           {"title", plan.title},
-          {"case_hash", plan.case_hash},
+          {"case_hash", plan.of.hash},
+          {"case_hash_without_end", plan.of.hash_without_end},
+          {"end_s", plan.of.end},
+          {"earlier_case_hashes", plan.earlier},
           {"seed", plan.seed},
           {"realizations", plan.study.realizations},
           {"sampling", sampling_names[static_cast<int>(plan.study.sampling)]},
@@ -30,10 +34,13 @@ Json to_json(const Plan& plan) {
 
 Plan from_json(const Json& json) {
   Plan plan{.title = json.at("title"),
-            .case_hash = json.at("case_hash"),
+            .of = {.hash = json.at("case_hash"),
+                   .hash_without_end = json.value("case_hash_without_end", ""),
+                   .end = json.value("end_s", 0.0)},
             .version = json.at("version"),
             .seed = json.at("seed"),
-            .study = {}};
+            .study = {},
+            .earlier = json.value("earlier_case_hashes", std::vector<std::string>())};
   StudySpec& study = plan.study;
   study.realizations = json.at("realizations");
   study.sampling = json.at("sampling") == sampling_names[1] ? Sampling::latin_hypercube : Sampling::monte_carlo;
@@ -59,7 +66,7 @@ void write_plan(const fs::path& directory, const Plan& plan) {
   write_file_atomically(directory / plan_name, to_json(plan).dump(2) + "\n");
 }
 
-void check_continues(const Plan& begun, const Plan& asked, const fs::path& directory) {
+void check_continues(const Plan& begun, const Plan& asked, const fs::path& directory, bool resume) {
   std::vector<Fault> faults;
   const auto differs = [&](const char* pointer, const std::string& what, const std::string& has,
                            const std::string& wants) {
@@ -69,8 +76,11 @@ void check_continues(const Plan& begun, const Plan& asked, const fs::path& direc
   const auto name = [](const Plan& plan) { return std::string(sampling_names[static_cast<int>(plan.study.sampling)]); };
   if (begun.seed != asked.seed)
     differs("/study/seed", "the seed", std::to_string(begun.seed), std::to_string(asked.seed));
-  if (begun.case_hash != asked.case_hash)
-    differs("", "the case hash", begun.case_hash, asked.case_hash + " (another case, or other settings)");
+  if (asked.of.extends(begun.of) && !resume)
+    faults.push_back({"/time/end_s", directory.string() + " holds this study up to t = " + to_text(begun.of.end) +
+                                         " s; --resume continues it to " + to_text(asked.of.end) + " s"});
+  else if (begun.of.hash != asked.of.hash && !asked.of.extends(begun.of))
+    differs("", "the case hash", begun.of.hash, asked.of.hash + " (another case, or other settings)");
   if (begun.version != asked.version) differs("", "results of version", begun.version, asked.version);
   if (name(begun) != name(asked)) differs("/study/sampling", "the sampling", name(begun), name(asked));
   const std::int64_t has = begun.study.realizations, wants = asked.study.realizations;

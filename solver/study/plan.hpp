@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "support/output_directory.hpp"
+
 namespace talus {
 
 /// What a Monte Carlo study asks for.
@@ -27,10 +29,11 @@ struct StudySpec {
 
 struct Plan {
   std::string title;
-  std::string case_hash;  ///< of the resolved case
-  std::string version;    ///< of the program that runs it
+  CaseIdentity of;      ///< of the resolved case
+  std::string version;  ///< of the program that runs it
   std::uint64_t seed = 0;
-  StudySpec study;  ///< `study.seed` is not used
+  StudySpec study;                        ///< `study.seed` is not used
+  std::vector<std::string> earlier = {};  ///< hashes of the case with earlier ends, whose runs at rest are kept
 };
 
 /// The plan of the study in `directory`, or nothing where there is none.
@@ -40,8 +43,9 @@ std::optional<Plan> find_plan(const std::filesystem::path& directory);
 /// Writes plan.json into `directory`.
 void write_plan(const std::filesystem::path& directory, const Plan& plan);
 
-/// Refuses to let `asked` go on where `begun` was begun, unless it is the same study or a longer one.
+/// Refuses to let `asked` go on where `begun` was begun, unless it is the same study or a longer one: of more
+/// realizations or, with `resume`, of a later end.
 /// @throws ConfigError naming every difference that forbids it
-void check_continues(const Plan& begun, const Plan& asked, const std::filesystem::path& directory);
+void check_continues(const Plan& begun, const Plan& asked, const std::filesystem::path& directory, bool resume);
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "support/csv.hpp"
 #include "support/files.hpp"
@@ -17,17 +18,56 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_case_bytes = std::size_t{1} << 30;
 constexpr std::size_t max_csv_bytes = std::size_t{1} << 30;
-constexpr std::size_t numbers = measure_table.size() + covariate_table.size();
-constexpr std::size_t columns = 2 + numbers + 2;  ///< index and status; digest and reason
 constexpr const char* of_realizations = "index";  ///< the head of the first column
 constexpr const char* of_replicates = "replicate";
 
-std::string csv_header(const std::string& index_name) {
-  std::string line = index_name + ",status";
+/// The columns of a table, in order. Those of version 0.1.0 stand first, later ones after them.
+std::vector<std::string> column_names(const std::string& index_name) {
+  std::vector<std::string> names{index_name, "status"}, later{"verdict", "verdict_reasons"};
   const Record any;
-  visit_numbers(any, [&](const char* key, const char*, auto) { line += std::string(",") + key; });
-  return line + ",digest,reason\n";
+  visit_numbers(any, [&](const char* key, const char*, auto) { (is_later(key) ? later : names).emplace_back(key); });
+  names.insert(names.end(), {"digest", "reason"});
+  names.insert(names.end(), later.begin(), later.end());
+  return names;
 }
+
+std::string csv_header(const std::string& index_name) {
+  std::string line;
+  for (const std::string& name : column_names(index_name)) line += (line.empty() ? "" : ",") + name;
+  return line + "\n";
+}
+
+/// Where the columns of a table stand, from its header. A table of an earlier version lacks those added later.
+class Columns {
+ public:
+  /// @param fail  called with what is wrong with the header
+  template <class Fail>
+  Columns(const std::vector<std::string>& header, const std::string& index_name, const Fail& fail)
+      : size_(header.size()) {
+    const std::vector<std::string> known = column_names(index_name);
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      if (std::ranges::find(known, header[i]) == known.end())
+        fail("the column " + in_quotes(header[i]) + " is unknown" + suggestion(header[i], known));
+      if (!at_.emplace(header[i], i).second) fail("the column " + in_quotes(header[i]) + " stands there twice");
+    }
+    for (const std::string& name : known)
+      if (!at_.contains(name) && !may_be_missing(name) && !name.starts_with("verdict"))
+        fail("the column " + in_quotes(name) + " is missing");
+    index_ = at_.at(index_name);
+  }
+
+  std::size_t size() const { return size_; }
+  std::size_t index() const { return index_; }
+  /// The place of a column; unset where the table lacks it.
+  std::optional<std::size_t> find(std::string_view name) const {
+    const auto found = at_.find(name);
+    return found == at_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  std::size_t size_, index_ = 0;
+  std::map<std::string, std::size_t, std::less<>> at_;
+};
 
 /// Reads the number of a field. @param fail  called with what is wrong with it
 template <class Number, class Fail>
@@ -37,27 +77,37 @@ void read_number(const std::string& field, Number& value, const Fail& fail) {
     fail(in_quotes(field) + " is not a number");
 }
 
-Record record(const std::vector<std::string>& fields, const std::string& place) {
+Record record(const std::vector<std::string>& fields, const Columns& columns, const std::string& place) {
   const auto fail = [&](const std::string& why) { throw IoError(place + " " + why); };
-  if (fields.size() != columns)
-    fail("has " + std::to_string(fields.size()) + " fields instead of " + std::to_string(columns));
-  std::size_t at = 0;
-  const auto fail_at = [&](const std::string& why) { fail("field " + std::to_string(at + 1) + ": " + why); };
+  if (fields.size() != columns.size())
+    fail("has " + std::to_string(fields.size()) + " fields instead of " + std::to_string(columns.size()));
+  const auto number = [&](std::size_t at, auto& value) {
+    read_number(fields[at], value,
+                [&](const std::string& why) { fail("field " + std::to_string(at + 1) + ": " + why); });
+  };
+  const auto text = [&](const char* name) {
+    const std::optional<std::size_t> at = columns.find(name);
+    return at ? fields[*at] : std::string();
+  };
   Record r;
-  read_number(fields[0], r.index, fail_at);
-  r.done = fields[1] == "done";
-  if (!r.done && fields[1] != "failed") fail("has the status \"" + fields[1] + "\", which is neither done nor failed");
-  r.reason = fields.back();
-  if (!r.done) return r;
-  at = 2;
+  number(columns.index(), r.index);
+  const std::string status = text("status");
+  if (status == "failed") return failed_record(r.index, text("reason"));
+  if (status != "done") fail("has the status \"" + status + "\", which is neither done nor failed");
+  r.done = true;
   visit_numbers(r, [&](const char* key, const char*, auto& value) {
-    if (fields[at].empty() && find_measure(key))  // the run was recorded before the measure existed
+    const std::optional<std::size_t> at = columns.find(key);
+    if (may_be_missing(key) && (!at || fields[*at].empty()))  // the run was recorded before the number existed
       value = std::numeric_limits<std::remove_reference_t<decltype(value)>>::quiet_NaN();
     else
-      read_number(fields[at], value, fail_at);
-    ++at;
+      number(*at, value);
   });
-  r.digest = fields[at];
+  r.digest = text("digest");
+  r.objections = text("verdict_reasons");
+  const std::string verdict = text("verdict");
+  const std::optional<Verdict> known = verdict_of(verdict.empty() ? word(Verdict::not_assessed) : verdict);
+  if (!known) fail("has the unknown verdict \"" + verdict + "\"");
+  r.verdict = *known;
   return r;
 }
 
@@ -88,7 +138,7 @@ void compare(const Plan& a, const Plan& b, const fs::path& first, const fs::path
                                 wants + " there, not " + has});
   };
   const bool hypercube = a.study.sampling == Sampling::latin_hypercube;
-  differ("case hash", a.case_hash, b.case_hash);
+  differ("case hash", a.of.hash, b.of.hash);
   differ("seed", std::to_string(a.seed), std::to_string(b.seed));
   differ("version of Talus", a.version, b.version);
   if (hypercube)
@@ -98,13 +148,15 @@ void compare(const Plan& a, const Plan& b, const fs::path& first, const fs::path
 }  // namespace
 
 std::string csv_line(const Record& record) {
-  std::string line = std::to_string(record.index) + (record.done ? ",done" : ",failed");
-  if (!record.done) return line + std::string(numbers + 2, ',') + csv_quoted(record.reason) + '\n';
-  visit_numbers(record, [&](const char*, const char*, auto value) {
-    line += ',';
-    if (!std::isnan(static_cast<double>(value))) line += to_text(value);
+  std::string numbers, later;
+  visit_numbers(record, [&](const char* key, const char*, auto value) {
+    std::string& cells = is_later(key) ? later : numbers;
+    cells += ',';
+    if (record.done && !std::isnan(static_cast<double>(value))) cells += to_text(value);
   });
-  return line + ',' + record.digest + ",\n";
+  const char* verdict = record.verdict == Verdict::not_assessed ? "" : word(record.verdict);
+  return std::to_string(record.index) + (record.done ? ",done" : ",failed") + numbers + ',' + record.digest + ',' +
+         csv_quoted(record.reason) + ',' + verdict + ',' + csv_quoted(record.objections) + later + '\n';
 }
 
 std::vector<Record> read_csv(const fs::path& path, const std::string& index_name) {
@@ -112,12 +164,12 @@ std::vector<Record> read_csv(const fs::path& path, const std::string& index_name
   CsvRows rows(text);
   if (!rows.next()) throw IoError(path.string() + " is empty");
   const auto place = [&] { return path.string() + ":" + std::to_string(rows.line()); };
-  const std::string header = csv_header(index_name);
-  if (std::string(rows.text()) + "\n" != header)
-    throw IoError(place() + " is not the header of a table of Talus: expected " + header.substr(0, header.size() - 1));
+  const Columns columns(rows.fields(), index_name, [&](const std::string& why) {
+    throw IoError(place() + " is not the header of a table of Talus: " + why);
+  });
   std::vector<Record> records;
   while (rows.next()) {
-    records.push_back(record(rows.fields(), place()));
+    records.push_back(record(rows.fields(), columns, place()));
     if (records.size() > 1 && records.back().index <= records[records.size() - 2].index)
       throw IoError(place() + " has the " + index_name + " " + std::to_string(records.back().index) +
                     " out of order, or twice");
@@ -186,7 +238,7 @@ void write_merged(const fs::path& out, const Tables& tables, const fs::path& ori
                   ": it holds a study with runs of its own; choose another directory");
   const std::string resolved_case =
       read_file(StudyPaths{origin}.resolved_case(), max_case_bytes);  // before anything is written
-  OutputDirectory claimed(out, OutputKind::study, tables.plan.case_hash, true);
+  OutputDirectory claimed(out, OutputKind::study, tables.plan.of, true);
   write_file_atomically(StudyPaths{out}.resolved_case(), resolved_case);
   write_plan(out, tables.plan);
   write_tables(StudyPaths{out}, tables.plan, tables.runs, tables.floor);

@@ -1,5 +1,8 @@
 #include "study/record.hpp"
 
+#include <algorithm>
+#include <limits>
+
 #include "support/files.hpp"
 #include "support/json.hpp"
 
@@ -9,6 +12,21 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t max_result_bytes = std::size_t{1} << 20;
+
+constexpr std::string_view invalid = "invalid result: ";
+
+/// Verdict and objections of a result; a result without them was not assessed.
+void read_quality(const Json& json, Record& record) {
+  const auto found = json.find("quality");
+  if (found == json.end()) return;
+  Quality quality;
+  for (const Json& reason : found->at("reasons"))
+    quality.reasons.push_back({.check = reason.at("check"), .message = reason.at("message")});
+  const std::optional<Verdict> verdict = verdict_of(found->at("verdict").get<std::string>());
+  if (!verdict) throw IoError("unknown verdict");
+  record.verdict = *verdict;
+  record.objections = objections_text(quality);
+}
 
 /// Puts a second name on a file, or a copy where the file system has no links; by rename.
 void link_or_copy(const fs::path& from, const fs::path& to) {
@@ -22,22 +40,51 @@ void link_or_copy(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
+bool is_later(std::string_view key) {
+  return std::ranges::any_of(covariate_table, [&](const Covariate& of) { return of.later && of.key == key; });
+}
+
+bool may_be_missing(std::string_view key) {
+  return is_later(key) || (find_measure(key) && key != measure_table[0].key);
+}
+
+std::string reason_of_invalid(const std::string& objections) { return std::string(invalid) + objections; }
+
+Record failed_record(std::int64_t index, std::string reason) {
+  Record record{.index = index, .reason = std::move(reason)};
+  if (record.reason.starts_with(invalid)) {
+    record.verdict = Verdict::invalid;
+    record.objections = record.reason.substr(invalid.size());
+  }
+  return record;
+}
+
 std::optional<Record> read_result(const fs::path& file, const RunKey& key, const StudyIdentity& of) {
   if (!fs::exists(file)) return std::nullopt;
   const auto read = [&](const Json& json) -> std::optional<Record> {
     Record record{.index = key.index, .done = true};
     visit_numbers(record, [&](const char* name, const char* object, auto& value) {
-      (object ? json.at(object) : json).at(name).get_to(value);
+      const Json& place = object ? json.at(object) : json;
+      if (may_be_missing(name) && !place.contains(name))
+        value = std::numeric_limits<std::remove_reference_t<decltype(value)>>::quiet_NaN();
+      else
+        place.at(name).get_to(value);
     });
     json.at("digest").get_to(record.digest);
     const bool interrupted = json.at("ending") == "interrupted";
+    const auto hash = json.at("provenance").at("case_hash").get<std::string>();
+    const bool earlier = std::ranges::find(of.earlier, hash) != of.earlier.end();
     const Json& from = json.at("provenance");
-    if (from.at("seed") != of.seed || from.at("case_hash") != of.case_hash ||
+    if (from.at("seed") != of.seed || (hash != of.case_hash && !earlier) ||
         from.at("realization") != key.drawn_realization() || from.at("perturbation").is_null() == key.is_replicate())
       throw ForeignResult(
           file.string() +
           " is of another run or study (seed, case hash, realization or perturbation differ); remove it");
-    return interrupted ? std::nullopt : std::optional(std::move(record));
+    const bool too_short = earlier && !json.at("at_rest").get<bool>();
+    if (interrupted || too_short) return std::nullopt;
+    read_quality(json, record);
+    if (record.verdict == Verdict::invalid) return failed_record(record.index, reason_of_invalid(record.objections));
+    return record;
   };
   try {
     return read_json(file, max_result_bytes, "the result of a run", read);

@@ -6,15 +6,19 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
 #include "study/run_key.hpp"
 #include "support/error.hpp"
 #include "support/measures.hpp"
+#include "support/quality.hpp"
 
 namespace talus {
 
-/// A finished or failed run. Of a failed one only `index` and `reason` mean anything.
+/// A finished or failed run. Of a failed one only `index`, `reason` and, where its result is invalid, `verdict` and
+/// `objections` mean anything.
 struct Record {
   std::int64_t index = 0;          ///< realization, or replicate
   bool done = false;               ///< false: failed
@@ -22,24 +26,41 @@ struct Record {
   double mean_phi_deg = 0.0;       ///< mean friction angle over the soil particles [deg]
   double captured_variance = 0.0;  ///< [-]
   std::int64_t steps = 0;
-  double wall_clock = 0.0;  ///< [s]
-  std::string digest = {};  ///< of the final state
-  std::string reason = {};  ///< why it failed, one line; empty if done
+  double wall_clock = 0.0;   ///< [s]
+  double left_domain = 0.0;  ///< soil particles that left through an open end; NaN: not recorded
+  std::string digest = {};   ///< of the final state
+  std::string reason = {};   ///< why it failed, one line; empty if done
+  Verdict verdict = Verdict::not_assessed;
+  std::string objections = {};  ///< objections_text() of the result's quality
 
   /// [m]; unset: it failed
   std::optional<double> influence_zone() const { return done ? std::optional(measures.influence_zone) : std::nullopt; }
 };
 
-/// A number of a run beside its measures: what it drew, and what it cost.
+/// The record of a failed run; with the verdict where it failed because its result is invalid.
+Record failed_record(std::int64_t index, std::string reason);
+/// Why a run with an invalid result has failed; failed_record() understands it.
+std::string reason_of_invalid(const std::string& objections);
+
+/// A number of a run beside its measures: what it drew, and what it cost. One that a later version than 0.1.0 added is
+/// a double, whose NaN says that it was not recorded.
 struct Covariate {
   const char* key;     ///< in result.json, in the tables, and as SQL column
   const char* object;  ///< of result.json that holds it; null: the document itself
   std::variant<double Record::*, std::int64_t Record::*> member;
+  bool later = false;  ///< added after version 0.1.0: results and tables of that version do not have it
 };
 inline constexpr std::array covariate_table{Covariate{"mean_friction_angle_deg", "field", &Record::mean_phi_deg},
                                             Covariate{"captured_variance", "field", &Record::captured_variance},
                                             Covariate{"steps", nullptr, &Record::steps},
-                                            Covariate{"wall_clock_s", nullptr, &Record::wall_clock}};
+                                            Covariate{"wall_clock_s", nullptr, &Record::wall_clock},
+                                            Covariate{"left_domain", nullptr, &Record::left_domain, true}};
+
+/// Whether version 0.1.0 did not have the number of this key.
+bool is_later(std::string_view key);
+/// Whether a result or table of an earlier version may be without this number: every measure but the first, and the
+/// covariates that came later. It is NaN then.
+bool may_be_missing(std::string_view key);
 
 /// Calls `use(key, object, value)` for every number of a record, in the order of the tables and of the SQL columns: the
 /// measures, then the covariates.
@@ -62,6 +83,7 @@ struct Failure {
 struct StudyIdentity {
   std::uint64_t seed = 0;
   std::string case_hash;
+  std::vector<std::string> earlier = {};  ///< Plan::earlier
 };
 
 /// A result.json of another run or another study.
@@ -69,8 +91,9 @@ struct ForeignResult : IoError {
   using IoError::IoError;
 };
 
-/// The record in a result.json of `key` that came to its end; nothing where the file is missing, damaged (the run is
-/// then carried out again) or of an interrupted run.
+/// The record in a result.json of `key` that came to its end, a failed one where the result is invalid; nothing where
+/// the file is missing, damaged, of an interrupted run, or of a run that still moved at an earlier end than the
+/// study's: it is then carried out again. A result of an earlier version, which assessed nothing, is read too.
 /// @throws ForeignResult
 std::optional<Record> read_result(const std::filesystem::path& file, const RunKey& key, const StudyIdentity& of);
 
@@ -79,7 +102,7 @@ std::optional<Record> read_result(const std::filesystem::path& file, const RunKe
 void write_failure(const StudyPaths& paths, const RunKey& key, const Failure& failure, std::int64_t attempts,
                    std::uint64_t seed);
 
-/// The reason in a failure record; nothing where it cannot be read.
+/// The reason in a failure record, for failed_record(); nothing where it cannot be read.
 std::optional<std::string> read_failure(const std::filesystem::path& file);
 
 /// Keeps the snapshots of realization 0 as profiles/first.vtkhdf and those of the farthest so far as

@@ -142,7 +142,7 @@ void StudyRunner::report(Engine& engine, bool now) {
                    .elapsed = std::chrono::duration<double>(Clock::now() - begin_).count(),
                    .mean = estimator.mean(),
                    .mean_half_width = estimator.mean_half_width(),
-                   .pending_reason = engine.executor().pending_reason(plan_.case_hash)});
+                   .pending_reason = engine.executor().pending_reason(plan_.of.hash)});
 }
 
 void StudyRunner::run_all(Engine& engine) {
@@ -194,27 +194,36 @@ void write_resolved(const fs::path& path, const nlohmann::ordered_json& resolved
 }
 
 /// The directory as its owner, with plan and case written.
-OutputDirectory claim_directory(const Plan& plan, const nlohmann::ordered_json& resolved, const fs::path& directory) {
-  if (const auto begun = find_plan(directory)) check_continues(*begun, plan, directory);
+/// @param plan  is given the earlier ends of a study that is continued
+OutputDirectory claim_directory(Plan& plan, const nlohmann::ordered_json& resolved, const fs::path& directory,
+                                bool resume) {
+  if (const auto begun = find_plan(directory)) {
+    check_continues(*begun, plan, directory, resume);
+    plan.earlier = begun->earlier;
+    if (plan.of.extends(begun->of)) plan.earlier.push_back(begun->of.hash);
+  }
   const StudyPaths paths{directory};
   if (fs::exists(paths.realizations()) && !fs::exists(paths.runs()))
     throw IoError(directory.string() +
                   " holds a merged study, which cannot go on; run the rest elsewhere and merge again");
-  OutputDirectory claimed(directory, OutputKind::study, plan.case_hash, true);
+  OutputDirectory claimed(directory, OutputKind::study, plan.of, true);
+  write_plan(directory, plan);  // first: it says which results of earlier ends belong to the study
   write_resolved(paths.resolved_case(), resolved);
-  write_plan(directory, plan);
+  if (claimed.extends()) claimed.reopen();
   return claimed;
 }
 
 }  // namespace
 
 void prepare_study(const Plan& plan, const nlohmann::ordered_json& resolved, const fs::path& directory) {
-  claim_directory(plan, resolved, directory);
+  Plan claimed = plan;
+  claim_directory(claimed, resolved, directory, false);
 }
 
-StudyEnd run_study(const Plan& plan, const nlohmann::ordered_json& resolved, const fs::path& directory,
+StudyEnd run_study(const Plan& asked, const nlohmann::ordered_json& resolved, const fs::path& directory,
                    const RunStudyOptions& options) {
-  OutputDirectory claimed = claim_directory(plan, resolved, directory);
+  Plan plan = asked;
+  OutputDirectory claimed = claim_directory(plan, resolved, directory, options.resume);
   try {
     const StudyEnd end = StudyRunner(plan, directory, options).run();
     if (end == StudyEnd::finished || end == StudyEnd::stopped_early) claimed.mark_finished();

@@ -41,6 +41,7 @@ struct RunStudyOptions {
   std::optional<std::int64_t> last;  ///< unset: the planned number
   int attempts = default_attempts;   ///< crashes of a run before it has failed, >= 1
   bool retry_failed = false;         ///< run again what has failed before
+  bool resume = false;               ///< accept a study of an earlier end: what still moved there is run again
   /// How often a person has asked to stop: once, workers checkpoint; twice, they are killed.
   std::function<int()> interrupts;
   std::function<void(const Progress&)> report;   ///< called often

@@ -136,6 +136,7 @@ bool StudySummary::add(const Record& record) {
   if (next_ < record.index) missing_.push_back({next_, record.index - 1});
   next_ = record.index + 1;
   if (record.index == 0) origin_ = record;
+  quality_.add(record);
   if (!record.done) {
     failures_.push_back({{"index", record.index}, {"reason", record.reason}});
     return true;
@@ -163,6 +164,7 @@ MeasureSample StudySummary::sample(const Measure& measure) const {
   return {.values = samples_[static_cast<std::size_t>(&measure - measure_table.data())],
           .noise = std::move(noise),
           .failed = failed(),
+          .quality = quality_.counts(),
           .complete = missing_.empty() && next_ >= until()};
 }
 
@@ -193,15 +195,21 @@ Json StudySummary::replicates_json() const {
           {"relative_step_of_tan_phi", 1e-6}};
 }
 
+Json StudySummary::quality_json() const {
+  const MeasureSample runout = sample(measure_table[0]);
+  return quality_.json(moments(runout.values), moments(runout.noise));
+}
+
 Json StudySummary::json() const {
   Json study = {{"title", plan_.title},
                 {"provenance",
                  {{"program", "talus"},
                   {"version", plan_.version},
                   {"seed", plan_.seed},
-                  {"case_hash", plan_.case_hash},
+                  {"case_hash", plan_.of.hash},
                   {"sampling", is_hypercube(plan_) ? "latin_hypercube" : "monte_carlo"}}},
-                {"realizations", realizations_json()}};
+                {"realizations", realizations_json()},
+                {"quality", quality_json()}};
   if (is_hypercube(plan_)) study["provenance"]["stratified_modes"] = plan_.study.stratified_modes;
   for (const Measure& measure : measure_table) {
     const MeasureSample of = sample(measure);
@@ -231,11 +239,8 @@ Json distribution(const Plan& plan, const Measure& measure, const MeasureSample&
   if (edges.empty()) edges = given_edges(plan, measure);
   Json quantity = quantity_json(sample, values, edges);
   if (bins.count > 0) quantity["histogram"]["edges_given"] = false;
-  Json answer = {{"quantity", measure.key},
-                 {"planned", plan.study.realizations},
-                 {"done", values.size()},
-                 {"failed", sample.failed},
-                 {"complete", sample.complete}};
+  Json answer = {{"quantity", measure.key}, {"planned", plan.study.realizations}, {"done", values.size()},
+                 {"failed", sample.failed}, {"quality", sample.quality.json()},   {"complete", sample.complete}};
   for (const char* key :
        {"n", "mean", "mean_ci95", "stdev", "min", "max", "noise_floor_stdev", "stdev_over_noise_floor", "histogram"})
     answer[key] = std::move(quantity[key]);

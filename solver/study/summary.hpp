@@ -9,6 +9,7 @@
 
 #include "study/estimator.hpp"
 #include "study/plan.hpp"
+#include "study/quality_summary.hpp"
 #include "study/record.hpp"
 #include "support/json.hpp"
 #include "support/measures.hpp"
@@ -20,6 +21,7 @@ struct MeasureSample {
   std::vector<double> values;  ///< of the realizations done, in order of index
   std::vector<double> noise;   ///< of realization 0 and its replicates, in order; empty without replicates
   std::int64_t failed = 0;
+  QualityCounts quality;
   bool complete = false;  ///< every realization of the study has ended
 };
 
@@ -41,6 +43,8 @@ class StudySummary {
 
   std::int64_t done() const { return static_cast<std::int64_t>(phi_.size()); }
   std::int64_t failed() const { return static_cast<std::int64_t>(failures_.size()); }
+  /// What study.json says of the verdicts.
+  Json quality_json() const;
   /// The study ended before its planned number.
   bool stopped_early() const { return stop_.size() && *stop_.size() < plan_.study.realizations; }
 
@@ -54,6 +58,7 @@ class StudySummary {
   StopRule stop_;
   std::array<std::vector<double>, measure_table.size()> samples_;  ///< of the done ones, in order of index
   std::vector<double> phi_;                                        ///< mean friction angles [deg]
+  QualitySummary quality_;
   Json failures_ = Json::array();
   Json missing_ = Json::array();  ///< ranges of indices without a record, up to next_
   std::int64_t next_ = 0;         ///< one more than the last index

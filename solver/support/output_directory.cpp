@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "support/json.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
@@ -61,30 +62,41 @@ std::optional<OutputMarker> find_output_marker(const fs::path& directory) {
                      if (kind != "run" && kind != "study")
                        throw IoError(path.string() + ": /kind is \"" + kind + "\", not run or study");
                      return OutputMarker{.kind = kind == "run" ? OutputKind::run : OutputKind::study,
-                                         .case_hash = json.at("case_hash").get<std::string>(),
+                                         .of = {.hash = json.at("case_hash").get<std::string>(),
+                                                .hash_without_end = json.value("case_hash_without_end", ""),
+                                                .end = json.value("end_s", 0.0)},
                                          .finished = json.at("finished").get<bool>()};
                    });
 }
 
-OutputDirectory::OutputDirectory(fs::path path, OutputKind kind, const std::string& case_hash, bool resume)
-    : path_(std::move(path)), marker_{.kind = kind, .case_hash = case_hash} {
+OutputDirectory::OutputDirectory(fs::path path, OutputKind kind, const CaseIdentity& of, bool resume)
+    : path_(std::move(path)), marker_{.kind = kind, .of = of} {
   try {
     fs::create_directories(path_);
     refuse_foreign(path_);  // first, since the lock file would stay behind in a foreign directory
     lock_ = lock(path_);
     if (const auto old = find_output_marker(path_)) {
       if (old->kind != kind) refuse(path_, std::string("it holds a ") + name(old->kind) + ", not a " + name(kind));
-      if (old->case_hash != case_hash)
+      const bool extends = of.extends(old->of);
+      if (extends && old->finished && !resume)
+        throw IoError(path_.string() + " holds this " + name(kind) + " up to t = " + to_text(old->of.end) +
+                      " s; --resume continues it to " + to_text(of.end) + " s");
+      if (old->of.hash != of.hash && !extends)
         refuse(path_, std::string("it holds a ") + name(kind) + " of another case (or of other settings)");
       if (old->finished && !resume) refuse(path_, std::string("it holds a finished ") + name(kind));
-      marker_.finished = old->finished;
-      resumed_ = resume;
+      marker_.finished = old->finished && !extends;
+      if (extends) earlier_end_ = old->of.end;
     }
     remove_temporaries(path_);
-    if (!finished()) write_marker();
+    if (!finished() && !extends()) write_marker();
   } catch (const fs::filesystem_error& e) {
     throw_io_error("write into", path_, e.code().value());
   }
+}
+
+void OutputDirectory::reopen() {
+  marker_.finished = false;
+  write_marker();
 }
 
 void OutputDirectory::mark_finished() {
@@ -93,10 +105,9 @@ void OutputDirectory::mark_finished() {
 }
 
 void OutputDirectory::write_marker() const {
-  const Json json = {{"program", "talus"},
-                     {"kind", name(marker_.kind)},
-                     {"case_hash", marker_.case_hash},
-                     {"finished", marker_.finished}};
+  const Json json = {{"program", "talus"},           {"kind", name(marker_.kind)},
+                     {"case_hash", marker_.of.hash}, {"case_hash_without_end", marker_.of.hash_without_end},
+                     {"end_s", marker_.of.end},      {"finished", marker_.finished}};
   write_file_atomically(path_ / marker_name, json.dump(2) + "\n");
 }
 

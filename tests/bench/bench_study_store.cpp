@@ -26,7 +26,7 @@ using namespace talus;
 namespace fs = std::filesystem;
 
 Plan plan(std::int64_t realizations) {
-  Plan p{.title = "A slope", .case_hash = "0123456789abcdef", .version = "0.1.0", .seed = 42, .study = {}};
+  Plan p{.title = "A slope", .of = {"0123456789abcdef"}, .version = "0.1.0", .seed = 42, .study = {}};
   p.study.realizations = realizations;
   p.study.noise_floor_replicates = 0;
   return p;
@@ -46,7 +46,7 @@ std::string result(std::int64_t index) {
 }
 
 void make(const fs::path& directory, std::int64_t n) {
-  OutputDirectory(directory, OutputKind::study, "0123456789abcdef", true);
+  OutputDirectory(directory, OutputKind::study, {"0123456789abcdef"}, true);
   fs::create_directories(directory / "runs");
   write_plan(directory, plan(n));
   for (std::int64_t i = 0; i < n; ++i) std::ofstream(StudyPaths{directory}.result(realization(i))) << result(i) << "\n";

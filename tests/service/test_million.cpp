@@ -57,7 +57,7 @@ TEST(MillionRealizations, HistogramAndTablesComeFromTheRecords) {
   Store store(
       directory / "queue.sqlite", directory / "jobs", [] { return Milliseconds{1'000'000}; }, 30'000);
   const Job job = million_job(store, directory / "queue.sqlite");
-  Plan plan{.title = "A slope", .case_hash = "0123456789abcdef", .version = "0", .seed = 1, .study = {}};
+  Plan plan{.title = "A slope", .of = {"0123456789abcdef"}, .version = "0", .seed = 1, .study = {}};
   plan.study.realizations = million;
   plan.study.noise_floor_replicates = 0;
 

@@ -40,7 +40,8 @@ struct StoreTest : testing::Test {
             .captured_variance = 0.9,
             .steps = 9,
             .wall_clock = 0.5,
-            .digest = "d"};
+            .digest = "d",
+            .verdict = Verdict::sound};
   }
   /// How many runs the store puts back when `held` are renewed.
   std::int64_t requeued(std::vector<Claim> held = {}) { return store->renew_leases(held).requeued; }
@@ -445,7 +446,7 @@ TEST_F(StoreTest, ADatabaseFromBeforeAMeasureGetsItsColumn) {
   EXPECT_TRUE(std::isnan(run->result->measures.front_mass_999));
   EXPECT_TRUE(store->measure_sample(job("one"), *find_measure("front_mass_999_m"), {}).values.empty());
   EXPECT_EQ(store->measure_sample(job("one"), *find_measure("influence_zone_m"), {}).values, std::vector<double>{7.5});
-  EXPECT_EQ(table_of(*store, claim.study), std::vector<std::string>{"0,done,7.5,1,2,,4,25,0.9,9,0.5,d,\n"});
+  EXPECT_EQ(table_of(*store, claim.study), std::vector<std::string>{"0,done,7.5,1,2,,4,25,0.9,9,0.5,d,,sound,,0\n"});
 }
 
 /// The tables of version 2, before runs had a level, with one job: realization 0 and replicate 1 are done, realization
@@ -506,8 +507,9 @@ TEST_F(StoreTest, ADatabaseFromBeforeLevelsIsMigrated) {
   EXPECT_EQ(store->stored_response("a", "k")->location, "/old");
   EXPECT_EQ(store->measure_sample(old, measure_table[0], {}).values, std::vector<double>{7.5});
   EXPECT_EQ(store->measure_sample(old, measure_table[0], {}).noise, (std::vector<double>{7.5, 7.25}));
-  EXPECT_EQ(table_of(*store, old.number),
-            (std::vector<std::string>{"0,done,7.5,1,2,3,4,25,0.9,9,0.5,d,\n", "1,failed,,,,,,,,,,,\"diverged\"\n"}));
+  EXPECT_EQ(table_of(*store, old.number), (std::vector<std::string>{"0,done,7.5,1,2,3,4,25,0.9,9,0.5,d,,,,\n",
+                                                                    "1,failed,,,,,,,,,,,\"diverged\",,,\n"}));
+  EXPECT_EQ(old.quality, (QualityCounts{.not_assessed = 1}));
   const service::Run failed = *store->run(old.number, realization(1));
   EXPECT_EQ(failed.key.level, 0);
   EXPECT_EQ(failed.failure->exit_code, 4);

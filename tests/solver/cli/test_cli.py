@@ -268,11 +268,12 @@ class Run(Directory):
             process.send_signal(number)
             _, stderr = process.communicate(timeout=60)
             self.assertEqual(process.returncode, 6, stderr)
-            self.assertIn("--resume", stderr)
+            self.assertIn("the same command continues it", stderr)
             self.assertTrue((out / "checkpoint.h5").exists())
             self.assertFalse((out / "result.json").exists())
-            done = talus("run", SLOPE, *COARSE, *fine, "--realization", 2, "--out", out, "--resume", "--threads", 2)
+            done = talus("run", SLOPE, *COARSE, *fine, "--realization", 2, "--out", out, *(["--resume"] if number == signal.SIGINT else []), "--threads", 2)
             self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stderr, r"continues from t = \d")
             result = load(out / "result.json")
             for key in ("digest", "steps", "evaluations", "influence_zone_m", "max_speed_m_s"):
                 self.assertEqual(result[key], whole[key], key)
@@ -280,7 +281,42 @@ class Run(Directory):
                 self.assertEqual(a["VTKHDF/Steps/Values"][:].tolist(), b["VTKHDF/Steps/Values"][:].tolist())
                 self.assertTrue((a["VTKHDF/PointData/velocity"][:] == b["VTKHDF/PointData/velocity"][:]).all())
             self.assertEqual((out / "history.csv").read_text(), (self.dir / "whole/history.csv").read_text())
-            self.assertFalse((out / "checkpoint.h5").exists())
+            self.assertEqual((out / "checkpoint.h5").exists(), not result["at_rest"])
+
+    def test_a_run_that_ended_moving_continues_to_a_later_end(self):
+        def ends(time):
+            return ["--set", f"time.end_s={time}", "--set", "time.snapshot_times_s=[0.5]"]
+        out = self.dir / "a"
+        whole = self.run_ok("whole", *ends(3))
+        self.assertFalse(self.run_ok("a", *ends(1))["at_rest"])
+        done = talus("run", SLOPE, *COARSE, *ends(3), "--out", out)
+        self.assertEqual(done.returncode, 5)
+        self.assertIn("up to t = 1 s; --resume continues it to 3 s", done.stderr)
+        self.assertTrue((out / "result.json").exists())
+        done = talus("run", SLOPE, *COARSE, *ends(3), "--out", out, "--resume")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("continues from t = 1 s", done.stderr)
+        result = load(out / "result.json")
+        self.assertEqual((result["time_s"], result["provenance"]["case_hash"]), (3.0, whole["provenance"]["case_hash"]))
+        self.assertLess(abs(result["influence_zone_m"] - whole["influence_zone_m"]), 0.05)  # one step was shortened
+        times = [float(row["time_s"]) for row in table(out / "history.csv")]
+        self.assertEqual((times[0], times[-1]), (0.0, 3.0))
+        self.assertEqual(times, sorted(set(times)))
+        with h5py.File(out / "snapshots.vtkhdf") as f:
+            shots = f["VTKHDF/Steps/Values"][:].tolist()
+        self.assertEqual((len(shots), shots[0], shots[2:]), (4, 0.0, [1.0, 3.0]))
+        done = talus("run", SLOPE, *COARSE, *ends(1), "--out", out, "--resume")
+        self.assertEqual(done.returncode, 5)
+        self.assertIn("another case", done.stderr)
+
+    def test_a_run_at_rest_has_nothing_to_continue(self):
+        rest = ["--set", "time.stop_at_rest=true", "--set", "particle_spacing_m=1", "--set", "time.end_s=60"]
+        first = self.run_ok("a", *rest)
+        self.assertTrue(first["at_rest"])
+        done = talus("run", SLOPE, *COARSE, *rest[:-1], "time.end_s=80", "--out", self.dir / "a", "--resume")
+        self.assertEqual(done.returncode, 5)
+        self.assertIn("came to rest before its end, t = 60 s", done.stderr)
+        self.assertEqual(load(self.dir / "a/result.json"), first)
 
     def test_divergence_is_4_names_the_place_and_keeps_the_snapshots(self):
         done = talus("run", self.case(time={"end_s": 100, "fixed_step_s": 0.05, "snapshot_times_s": [0.05]}), "--out", self.dir / "a")
@@ -343,6 +379,31 @@ class Study(Directory):
         self.assertIn("diverged", rows[0]["reason"])
         study = load(self.dir / "a/study.json")
         self.assertEqual((study["realizations"]["planned"], study["realizations"]["done"]), (3, 0))
+
+    def test_a_study_continues_to_a_later_end(self):
+        """What still moved is run again from the start, so that the study is the one of the later end, bit for bit."""
+        later = ["--no-figures", "--set", "time.end_s=4"]
+        self.assertEqual(self.study("a", 3, "--no-figures").returncode, 0)
+        self.assertFalse(any(load(p)["at_rest"] for p in (self.dir / "a/runs").iterdir()))
+        done = self.study("a", 3, *later)
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("up to t = 3 s; --resume continues it to 4 s", done.stderr)
+        done = self.study("a", 3, *later, "--resume")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.study("b", 3, *later).returncode, 0)
+        tables = [table(self.dir / d / "realizations.csv") for d in "ab"]
+        self.assertEqual(*([row["digest"] for row in rows] for rows in tables))
+        # A run at rest is kept; an unfinished change of the end loses nothing.
+        kept = self.dir / "a/runs/000001.json"
+        result = load(kept)
+        result["at_rest"] = True
+        kept.write_text(json.dumps(result))
+        later[-1] = "time.end_s=5"
+        done = self.study("a", 3, *later, "--resume")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(load(kept), result)
+        self.assertEqual(load(self.dir / "a/runs/000002.json")["time_s"], 5.0)
+        self.assertEqual(talus("stats", self.dir / "a", "--from-runs", "--out", self.dir / "again").returncode, 0)
 
     def kill_and_resume(self, out, realizations, *arguments):
         command = [*self.arguments, *arguments, "--seed", 3, "--realizations", realizations, "--out", self.dir / out, "--no-figures"]

@@ -40,10 +40,19 @@ RunResult sample_result() {
           .penetrated = 1,
           .left_domain = 2,
           .at_rest = true,
+          .mass = {.filled = 27901.5, .outline = 27900.25},
           .digest = "0123456789abcdef",
           .backend = "vectorised",
           .simd = "AVX2",
-          .field = {.captured_variance = 0.016, .mean_phi = radians(25.0), .terms = 5}};
+          .field = {.captured_variance = 0.016, .mean_phi = radians(25.0), .terms = 5},
+          .quality = {.verdict = Verdict::invalid,
+                      .reasons = {{.check = "compression", .value = 0.06, .limit = 0.05, .message = "6 %"},
+                                  {.check = "mach_number",
+                                   .verdict = Verdict::invalid,
+                                   .value = 1.5,
+                                   .limit = 0.5,
+                                   .message = "1.5 times"}}},
+          .warnings = {{"/time/end_s", "is long"}}};
 }
 
 Provenance sample_provenance() {
@@ -84,12 +93,21 @@ TEST(ResultJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(d["left_domain"], 2);
   EXPECT_EQ(d["at_rest"], true);
   EXPECT_EQ(d["ending"], "at_rest");
+  EXPECT_EQ(d["mass_kg_m"]["filled"], 27901.5);
+  EXPECT_EQ(d["mass_kg_m"]["outline"], 27900.25);
   EXPECT_EQ(d["digest"], "0123456789abcdef");
   EXPECT_EQ(d["backend"], "vectorised");
   EXPECT_EQ(d["simd"], "AVX2");
   EXPECT_EQ(d["field"]["captured_variance"], 0.016);
   EXPECT_NEAR(d["field"]["mean_friction_angle_deg"], 25.0, 1e-13);
   EXPECT_EQ(d["field"]["terms"], 5);
+  EXPECT_EQ(d["quality"]["verdict"], "invalid");
+  EXPECT_EQ(d["quality"]["reasons"].size(), 2u);
+  EXPECT_EQ(
+      d["quality"]["reasons"][1],
+      (json{
+          {"check", "mach_number"}, {"verdict", "invalid"}, {"value", 1.5}, {"limit", 0.5}, {"message", "1.5 times"}}));
+  EXPECT_EQ(d["warnings"], (json{{{"pointer", "/time/end_s"}, {"message", "is long"}}}));
   EXPECT_EQ(d["provenance"]["version"], "0.1.0");
   EXPECT_EQ(d["provenance"]["seed"], 9007199254740993u);
   EXPECT_EQ(d["provenance"]["realization"], 7);
@@ -125,17 +143,29 @@ TEST(ResultJson, ComesBack) {
   EXPECT_EQ(again.dump(), document().dump());
 }
 
-TEST(ResultJson, OfAnEarlierVersionIsReadWithoutTheNameOfTheLoops) {
+TEST(ResultJson, OfAnEarlierVersionIsReadWithoutWhatCameLater) {
   const TemporaryDirectory dir;
   json earlier = document();
-  earlier.erase("backend");
-  earlier.erase("simd");
+  for (const char* key : {"backend", "simd", "quality", "warnings", "mass_kg_m"}) earlier.erase(key);
   EXPECT_EQ(schema_faults(earlier), "");
   write_file_atomically(dir / "result.json", earlier.dump());
   const RunResult result = read_result(dir / "result.json").first;
   EXPECT_EQ(result.backend, "");
   EXPECT_EQ(result.simd, "");
+  EXPECT_EQ(result.mass.outline, 0.0);
+  EXPECT_EQ(result.quality.verdict, Verdict::not_assessed);
+  EXPECT_TRUE(result.quality.reasons.empty() && result.warnings.empty());
   EXPECT_EQ(result.digest, earlier["digest"]);
+}
+
+TEST(ResultJson, IsReadWithoutAMeasureThatCameLater) {
+  const TemporaryDirectory dir;
+  json earlier = document();
+  earlier.erase("front_mass_999_m");
+  write_file_atomically(dir / "result.json", earlier.dump());
+  const RunResult result = read_result(dir / "result.json").first;
+  EXPECT_TRUE(std::isnan(result.measures.front_mass_999));
+  EXPECT_EQ(result.measures.front_mass_99, 32.3);
 }
 
 TEST(ResultJson, KeepsTheLargestSeed) {
@@ -186,7 +216,10 @@ std::string refusal(const TemporaryDirectory& dir, const json& bad) {
 TEST(ResultJson, NamesAnyKeyThatIsMissing) {
   const TemporaryDirectory dir;
   for (const std::string& pointer : pointers(document())) {
-    if (pointer == "/backend" || pointer == "/simd") continue;  // earlier versions did not write them
+    const std::string key = pointer.substr(1);
+    if (key == "backend" || key == "simd" || key == "quality" || key == "warnings" || key == "mass_kg_m")
+      continue;  // came later
+    if (const Measure* measure = find_measure(key); measure && measure != measure_table.data()) continue;
     const json::json_pointer place(pointer);
     json bad = document();
     bad[place.parent_pointer()].erase(place.back());
@@ -199,7 +232,8 @@ TEST(ResultJson, NamesAnyKeyThatIsOfTheWrongKind) {
   const TemporaryDirectory dir;
   for (const std::string& pointer : pointers(document())) {
     json bad = document();
-    bad[json::json_pointer(pointer)] = json::array();
+    json& value = bad[json::json_pointer(pointer)];
+    value = value.is_array() ? json::object() : json::array();
     EXPECT_NE(refusal(dir, bad).find("result.json: " + pointer + " "), std::string::npos);
   }
 }
@@ -218,6 +252,9 @@ TEST(ResultJson, NamesValuesOutOfRange) {
                                                 {"/digest", "0123"},
                                                 {"/digest", "0123456789ABCDEF"},
                                                 {"/ending", "bored"},
+                                                {"/quality/verdict", "good"},
+                                                {"/quality/reasons", 1},
+                                                {"/quality/reasons/0/limit", "1"},
                                                 {"/field/captured_variance", -0.1},
                                                 {"/provenance/seed", -1},
                                                 {"/at_rest", 1},

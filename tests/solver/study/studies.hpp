@@ -27,7 +27,7 @@ inline void write(const std::filesystem::path& path, const std::string& text) {
 }
 
 inline Plan plan(std::int64_t realizations) {
-  Plan p{.title = "A slope", .case_hash = "0123456789abcdef", .version = "0.1.0", .seed = 42, .study = {}};
+  Plan p{.title = "A slope", .of = {"0123456789abcdef", "family", 2.0}, .version = "0.1.0", .seed = 42, .study = {}};
   p.study.realizations = realizations;
   p.study.noise_floor_replicates = 0;
   return p;

@@ -33,17 +33,26 @@ std::string refusal(const std::string& text) {
 const std::string head =
     "index,status,influence_zone_m,front_connected_m,front_mass_99_m,front_mass_999_m,centre_of_mass_x_m,mean_friction_"
     "angle_deg,captured_variance,"
-    "steps,wall_clock_s,digest,reason\n";
+    "steps,wall_clock_s,digest,reason,verdict,verdict_reasons,left_domain\n";
+
+/// The header of version 0.1.0.
+const std::string head_0_1_0 = head.substr(0, head.find(",verdict")) + "\n";
 
 }  // namespace
 
 TEST(Csv, OneLineForEachRecord) {
   Record r = done(3, 34.5);
   r.measures.centre_of_mass_x = 0.1 + 0.2;  // 17 digits
-  EXPECT_EQ(table_of({r, failed(7, "diverged: at step 12, \"fast\"\nreally")}),
-            head +
-                "3,done,34.5,34.2,33.8,34.1,0.30000000000000004,24.7,0.25,1003,1.5,0000000000000013,\n"
-                "7,failed,,,,,,,,,,,\"diverged: at step 12, \"\"fast\"\" really\"\n");
+  r.left_domain = 2;
+  r.verdict = Verdict::doubtful;
+  r.objections = "left_terrain: 2 of 5 left";
+  EXPECT_EQ(
+      table_of({r, failed(7, "diverged: at step 12, \"fast\"\nreally"), failed_record(8, "invalid result: a: b")}),
+      head +
+          "3,done,34.5,34.2,33.8,34.1,0.30000000000000004,24.7,0.25,1003,1.5,0000000000000013,,doubtful,"
+          "\"left_terrain: 2 of 5 left\",2\n"
+          "7,failed,,,,,,,,,,,\"diverged: at step 12, \"\"fast\"\" really\",,,\n"
+          "8,failed,,,,,,,,,,,\"invalid result: a: b\",invalid,\"a: b\",\n");
 }
 
 TEST(Csv, ReadsBackExactly) {
@@ -51,9 +60,17 @@ TEST(Csv, ReadsBackExactly) {
   const auto path = directory / "t.csv";
   Record r = done(3, 100.0 / 3.0);
   r.wall_clock = 1e-300;
-  write(path, table_of({r, failed(7, "a, \"b\"; c"), done(1000000, -0.125)}));
+  r.left_domain = 2;
+  r.verdict = Verdict::doubtful;
+  r.objections = "left_terrain: 2 of 5 left; still_moving: yes";
+  write(path, table_of({r, failed(7, "a, \"b\"; c"), failed_record(8, "invalid result: a: b"), done(1000000, -0.125)}));
   const std::vector<Record> back = read_csv(path, "index");
-  ASSERT_EQ(back.size(), 3u);
+  ASSERT_EQ(back.size(), 4u);
+  EXPECT_EQ(back[0].left_domain, 2.0);
+  EXPECT_EQ(back[0].verdict, Verdict::doubtful);
+  EXPECT_EQ(back[0].objections, r.objections);
+  EXPECT_EQ(back[2].verdict, Verdict::invalid);
+  EXPECT_EQ(back[2].objections, "a: b");
   EXPECT_TRUE(back[0].done);
   EXPECT_EQ(back[0].measures.influence_zone, 100.0 / 3.0);
   EXPECT_EQ(back[0].measures.front_mass_999, 100.0 / 3.0 - 0.4);
@@ -65,7 +82,7 @@ TEST(Csv, ReadsBackExactly) {
   EXPECT_FALSE(back[1].done);
   EXPECT_EQ(back[1].index, 7);
   EXPECT_EQ(back[1].reason, "a, \"b\"; c");
-  EXPECT_EQ(back[2].index, 1000000);
+  EXPECT_EQ(back[3].index, 1000000);
   EXPECT_EQ(table_of(back), content(path));
 }
 
@@ -80,23 +97,57 @@ TEST(Csv, AMeasureWithoutAValueIsAnEmptyCell) {  // of a run that was recorded b
   EXPECT_EQ(back[0].measures.centre_of_mass_x, r.measures.centre_of_mass_x);
 }
 
+TEST(Csv, ReadsTheTablesOfVersion010) {
+  const TemporaryDirectory directory;
+  write(directory / "t.csv", head_0_1_0 +
+                                 "3,done,34.5,34.2,33.8,34.1,12,24.7,0.25,1003,1.5,0000000000000013,\n"
+                                 "7,failed,,,,,,,,,,,\"diverged: at step 12\"\n");
+  const std::vector<Record> back = read_csv(directory / "t.csv", "index");
+  ASSERT_EQ(back.size(), 2u);
+  EXPECT_EQ(back[0].measures.centre_of_mass_x, 12.0);
+  EXPECT_EQ(back[0].digest, "0000000000000013");
+  EXPECT_TRUE(std::isnan(back[0].left_domain));
+  EXPECT_EQ(back[0].verdict, Verdict::not_assessed);
+  EXPECT_EQ(back[0].objections, "");
+  EXPECT_EQ(back[1].reason, "diverged: at step 12");
+  EXPECT_EQ(back[1].verdict, Verdict::not_assessed);
+}
+
+TEST(Csv, AMeasureThatTheTableLacksHasNoValue) {
+  const TemporaryDirectory directory;
+  std::string header = head;
+  header.erase(header.find("front_mass_999_m,"), std::string("front_mass_999_m,").size());
+  write(directory / "t.csv", header + "3,done,34.5,34.2,33.8,12,24.7,0.25,1003,1.5,d,,sound,,0\n");
+  const std::vector<Record> back = read_csv(directory / "t.csv", "index");
+  EXPECT_TRUE(std::isnan(back.at(0).measures.front_mass_999));
+  EXPECT_EQ(back[0].measures.centre_of_mass_x, 12.0);
+  EXPECT_EQ(back[0].left_domain, 0.0);
+  EXPECT_EQ(back[0].verdict, Verdict::sound);
+}
+
 TEST(Csv, AcceptsLineEndsOfOtherSystems) {
   const TemporaryDirectory directory;
-  write(directory / "t.csv", "index" + head.substr(5, head.size() - 6) + "\r\n3,failed,,,,,,,,,,,\"x\"\r\n");
+  write(directory / "t.csv", "index" + head.substr(5, head.size() - 6) + "\r\n3,failed,,,,,,,,,,,\"x\",,,\r\n");
   EXPECT_EQ(read_csv(directory / "t.csv", "index").front().reason, "x");
 }
 
 TEST(Csv, NamesFileLineAndFault) {
   const std::string good = table_of({done(3, 34.5)});
   EXPECT_NE(refusal("").find("t.csv is empty"), std::string::npos);
-  EXPECT_NE(refusal("a,b\n").find("t.csv:1 is not the header"), std::string::npos);
-  EXPECT_NE(refusal(good + "4,done,1\n").find("t.csv:3 has 3 fields instead of 13"), std::string::npos);
-  EXPECT_NE(refusal(good + "3,failed,,,,,,,,,,,x\n").find("t.csv:3 has the index 3 out of order, or twice"),
+  EXPECT_NE(refusal("a,b\n").find("t.csv:1 is not the header of a table of Talus: the column \"a\" is unknown"),
             std::string::npos);
-  EXPECT_NE(refusal(head + "3,lost,,,,,,,,,,,x\n").find("t.csv:2 has the status \"lost\""), std::string::npos);
-  EXPECT_NE(refusal(head + "3,done,far,1,1,1,1,1,1,1,1,d,\n").find("t.csv:2 field 3: \"far\" is not a number"),
+  EXPECT_NE(refusal("index,status,steps,steps\n").find("the column \"steps\" stands there twice"), std::string::npos);
+  EXPECT_NE(refusal("index,status\n").find("the column \"influence_zone_m\" is missing"), std::string::npos);
+  EXPECT_NE(refusal(head_0_1_0.substr(0, 40) + "\n").find("is unknown"), std::string::npos);  // cut off
+  EXPECT_NE(refusal(head + "3,done,1,1,1,1,1,1,1,1,1,d,,fine,,\n").find("t.csv:2 has the unknown verdict \"fine\""),
             std::string::npos);
-  EXPECT_NE(refusal(head + "3,done,nan,1,1,1,1,1,1,1,1,d,\n").find("\"nan\" is not a number"), std::string::npos);
+  EXPECT_NE(refusal(good + "4,done,1\n").find("t.csv:3 has 3 fields instead of 16"), std::string::npos);
+  EXPECT_NE(refusal(good + "3,failed,,,,,,,,,,,x,,,\n").find("t.csv:3 has the index 3 out of order, or twice"),
+            std::string::npos);
+  EXPECT_NE(refusal(head + "3,lost,,,,,,,,,,,x,,,\n").find("t.csv:2 has the status \"lost\""), std::string::npos);
+  EXPECT_NE(refusal(head + "3,done,far,1,1,1,1,1,1,1,1,d,,,,\n").find("t.csv:2 field 3: \"far\" is not a number"),
+            std::string::npos);
+  EXPECT_NE(refusal(head + "3,done,nan,1,1,1,1,1,1,1,1,d,,,,\n").find("\"nan\" is not a number"), std::string::npos);
   EXPECT_NE(refusal(head + "3,failed,,,,,,,,,,,\"x\n").find("t.csv:2 has 0 fields"),
             std::string::npos);  // an open quote
 }

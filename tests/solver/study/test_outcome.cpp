@@ -37,6 +37,13 @@ const RunEnd lost = with(left_with(0), [](RunEnd& e) {
 // Four crashes before are one less than the default number of attempts.
 const std::vector<Row> rows{
     {"done", with(left_with(0), [](RunEnd& e) { e.has_result = true; }), {.action = Action::done}},
+    {"an invalid result",
+     with(left_with(0),
+          [](RunEnd& e) {
+            e.has_result = true;
+            e.invalid = "invalid result: a: b";
+          }),
+     {.action = Action::failed, .reason = "invalid result: a: b"}},
     {"done while stopping",
      with(left_with(0), [](RunEnd& e) { e.has_result = e.stopping = true; }),
      {.action = Action::done}},

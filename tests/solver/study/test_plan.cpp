@@ -11,9 +11,9 @@ using namespace talus::fixtures;
 namespace {
 
 /// Why `asked` may not go on where `begun` was begun; empty if it may.
-std::string refusal(const Plan& begun, const Plan& asked) {
+std::string refusal(const Plan& begun, const Plan& asked, bool resume = false) {
   try {
-    check_continues(begun, asked, "dir");
+    check_continues(begun, asked, "dir", resume);
   } catch (const ConfigError& e) {
     return e.what();
   }
@@ -52,10 +52,14 @@ TEST(Plan, ReadsBack) {
              .stop_half_width = 0.25,
              .max_failed_share = 0.2,
              .histogram_edges = {1.0, 2.5}};
+  p.earlier = {"0011223344556677"};
   write_plan(directory.path(), p);
   const Plan back = *find_plan(directory.path());
   EXPECT_EQ(back.title, p.title);
-  EXPECT_EQ(back.case_hash, p.case_hash);
+  EXPECT_EQ(back.of.hash, p.of.hash);
+  EXPECT_EQ(back.of.hash_without_end, "family");
+  EXPECT_EQ(back.of.end, 2.0);
+  EXPECT_EQ(back.earlier, p.earlier);
   EXPECT_EQ(back.version, p.version);
   EXPECT_EQ(back.seed, p.seed);
   EXPECT_EQ(back.study.realizations, 30);
@@ -77,7 +81,7 @@ TEST(Plan, OnlyTheSameStudyOrALongerOneGoesOn) {
             std::string::npos);
   Plan other = plan(10);
   other.seed = 43;
-  other.case_hash = "fedcba9876543210";
+  other.of.hash = "fedcba9876543210";
   const std::string both = refusal(plan(10), other);
   EXPECT_NE(both.find("the seed 42, not 43"), std::string::npos);
   EXPECT_NE(both.find("the case hash 0123456789abcdef, not fedcba9876543210"), std::string::npos);
@@ -88,6 +92,16 @@ TEST(Plan, OnlyTheSameStudyOrALongerOneGoesOn) {
   other.study.histogram_edges = {1.0, 2.0};  // changes no run
   other.study.stop_half_width = 0.1;
   EXPECT_EQ(refusal(plan(10), other), "");
+}
+
+TEST(Plan, ALaterEndGoesOnWithResumeOnly) {
+  Plan later = plan(10);
+  later.of = {"fedcba9876543210", "family", 12.0};
+  EXPECT_EQ(refusal(plan(10), later, true), "");
+  EXPECT_EQ(refusal(plan(10), later), "/time/end_s: dir holds this study up to t = 2 s; --resume continues it to 12 s");
+  EXPECT_NE(refusal(later, plan(10), true).find("the case hash"), std::string::npos);
+  later.of.hash_without_end = "another";
+  EXPECT_NE(refusal(plan(10), later, true).find("the case hash"), std::string::npos);
 }
 
 TEST(Plan, ALatinHypercubeDoesNotGrow) {

@@ -82,7 +82,7 @@ TEST(Merge, NamesEveryDifference) {
   const TemporaryDirectory d;
   Plan other = plan(6);
   other.seed = 7;
-  other.case_hash = "fedcba9876543210";
+  other.of.hash = "fedcba9876543210";
   other.version = "9.9.9";
   const auto a = study(d / "a", plan(6), {done(0, 34.0)});
   const auto b = study(d / "b", other, {done(1, 35.0)});

@@ -160,7 +160,7 @@ TEST(RunStudy, AnotherStudyIsRefused) {
   s.plan.seed = 43;
   EXPECT_THROW(s.run(), ConfigError);
   s.plan.seed = 42;
-  s.plan.case_hash = "fedcba9876543210";
+  s.plan.of.hash = "fedcba9876543210";
   EXPECT_THROW(s.run(), ConfigError);
 }
 

@@ -111,27 +111,27 @@ TEST(ReadFile, RefusesWhatItCannotRead) {
 
 TEST(OutputDirectory, IsCreatedWithItsParents) {
   const TemporaryDirectory dir;
-  OutputDirectory out(dir / "some/where", OutputKind::run, "0123", false);
-  EXPECT_FALSE(out.resumed());
+  OutputDirectory out(dir / "some/where", OutputKind::run, {"0123"}, false);
+  EXPECT_FALSE(out.extends());
   EXPECT_FALSE(out.finished());
   const auto marker = find_output_marker(dir / "some/where");
   ASSERT_TRUE(marker);
   EXPECT_EQ(marker->kind, OutputKind::run);
-  EXPECT_EQ(marker->case_hash, "0123");
+  EXPECT_EQ(marker->of.hash, "0123");
   EXPECT_FALSE(marker->finished);
 }
 
 TEST(OutputDirectory, TakesAnEmptyDirectory) {
   const TemporaryDirectory dir;
   EXPECT_FALSE(find_output_marker(dir.path()));
-  EXPECT_NO_THROW(OutputDirectory(dir.path(), OutputKind::study, "0123", true));
+  EXPECT_NO_THROW(OutputDirectory(dir.path(), OutputKind::study, {"0123"}, true));
   EXPECT_EQ(find_output_marker(dir.path())->kind, OutputKind::study);
 }
 
 TEST(OutputDirectory, RefusesAForeignDirectoryAndLeavesNoTrace) {
   const TemporaryDirectory dir;
   write_file_atomically(dir / "thesis.tex", "years of work");
-  const std::string message = io_error([&] { OutputDirectory(dir.path(), OutputKind::run, "0123", true); });
+  const std::string message = io_error([&] { OutputDirectory(dir.path(), OutputKind::run, {"0123"}, true); });
   EXPECT_NE(message.find(dir.path().string()), std::string::npos) << message;
   EXPECT_NE(message.find("thesis.tex"), std::string::npos) << message;
   EXPECT_EQ(test::names_in(dir.path()), Names{"thesis.tex"});
@@ -140,9 +140,9 @@ TEST(OutputDirectory, RefusesAForeignDirectoryAndLeavesNoTrace) {
 TEST(OutputDirectory, RefusesAFile) {
   const TemporaryDirectory dir;
   write_file_atomically(dir / "file", "x");
-  EXPECT_NE(io_error([&] { OutputDirectory(dir / "file", OutputKind::run, "0", false); }).find("file"),
+  EXPECT_NE(io_error([&] { OutputDirectory(dir / "file", OutputKind::run, {"0"}, false); }).find("file"),
             std::string::npos);
-  EXPECT_NE(io_error([&] { OutputDirectory(dir / "file/below", OutputKind::run, "0", false); }).find("file"),
+  EXPECT_NE(io_error([&] { OutputDirectory(dir / "file/below", OutputKind::run, {"0"}, false); }).find("file"),
             std::string::npos);
 }
 
@@ -152,7 +152,7 @@ TEST(OutputDirectory, RefusesAMarkerThatIsNotOurs) {
        {"not json", "[]", "{\"kind\": \"run\"}", "{\"kind\": \"nonsense\", \"case_hash\": \"0\", \"finished\": true}",
         "{\"kind\": \"run\", \"case_hash\": 0, \"finished\": true}"}) {
     write_file_atomically(dir / "talus-output.json", text);
-    EXPECT_NE(io_error([&] { OutputDirectory(dir.path(), OutputKind::run, "0", true); }).find("talus-output.json"),
+    EXPECT_NE(io_error([&] { OutputDirectory(dir.path(), OutputKind::run, {"0"}, true); }).find("talus-output.json"),
               std::string::npos)
         << text;
   }
@@ -160,41 +160,66 @@ TEST(OutputDirectory, RefusesAMarkerThatIsNotOurs) {
 
 TEST(OutputDirectory, GoesOnWithAnUnfinishedRunOfTheSameCase) {
   const TemporaryDirectory dir;
-  { const OutputDirectory first(dir.path(), OutputKind::run, "0123", false); }
+  { const OutputDirectory first(dir.path(), OutputKind::run, {"0123"}, false); }
   write_file_atomically(dir / "history.csv", "ours");
-  EXPECT_TRUE(OutputDirectory(dir.path(), OutputKind::run, "0123", true).resumed());
-  EXPECT_FALSE(OutputDirectory(dir.path(), OutputKind::run, "0123", false).resumed());
-  EXPECT_NE(io_error([&] { OutputDirectory(dir.path(), OutputKind::run, "4567", true); }).find("another case"),
+  for (const bool resume : {false, true})
+    EXPECT_NO_THROW(OutputDirectory(dir.path(), OutputKind::run, {"0123"}, resume));
+  EXPECT_NE(io_error([&] { OutputDirectory(dir.path(), OutputKind::run, {"4567"}, true); }).find("another case"),
             std::string::npos);
   EXPECT_NE(io_error([&] {
-              OutputDirectory(dir.path(), OutputKind::study, "0123", true);
+              OutputDirectory(dir.path(), OutputKind::study, {"0123"}, true);
             }).find("it holds a run, not a study"),
+            std::string::npos);
+}
+
+TEST(OutputDirectory, TakesALaterEndWithResumeOnlyAndWritesWhenReopened) {
+  const TemporaryDirectory dir;
+  const CaseIdentity shorter{"0123", "family", 2.0}, longer{"4567", "family", 12.0},
+      other{"89ab", "another family", 12.0};
+  OutputDirectory(dir.path(), OutputKind::run, shorter, false).mark_finished();
+  EXPECT_NE(io_error([&] {
+              OutputDirectory(dir.path(), OutputKind::run, longer, false);
+            }).find("up to t = 2 s; --resume continues it to 12 s"),
+            std::string::npos);
+  EXPECT_NE(io_error([&] { OutputDirectory(dir.path(), OutputKind::run, other, true); }).find("another case"),
+            std::string::npos);
+  {
+    OutputDirectory out(dir.path(), OutputKind::run, longer, true);
+    EXPECT_TRUE(out.extends());
+    EXPECT_FALSE(out.finished());
+    EXPECT_EQ(out.earlier_end(), 2.0);
+    EXPECT_TRUE(find_output_marker(dir.path())->finished);
+    out.reopen();
+  }
+  EXPECT_EQ(find_output_marker(dir.path())->of.hash, "4567");
+  EXPECT_FALSE(find_output_marker(dir.path())->finished);
+  // Back to the earlier end: no longer the same case.
+  EXPECT_NE(io_error([&] { OutputDirectory(dir.path(), OutputKind::run, shorter, true); }).find("another case"),
             std::string::npos);
 }
 
 TEST(OutputDirectory, KeepsAFinishedRun) {
   const TemporaryDirectory dir;
   {
-    OutputDirectory first(dir.path(), OutputKind::run, "0123", false);
+    OutputDirectory first(dir.path(), OutputKind::run, {"0123"}, false);
     first.mark_finished();
     EXPECT_TRUE(first.finished());
   }
-  EXPECT_NE(io_error([&] { OutputDirectory(dir.path(), OutputKind::run, "0123", false); }).find("finished run"),
+  EXPECT_NE(io_error([&] { OutputDirectory(dir.path(), OutputKind::run, {"0123"}, false); }).find("finished run"),
             std::string::npos);
-  const OutputDirectory again(dir.path(), OutputKind::run, "0123", true);
+  const OutputDirectory again(dir.path(), OutputKind::run, {"0123"}, true);
   EXPECT_TRUE(again.finished());
-  EXPECT_TRUE(again.resumed());
 }
 
 TEST(OutputDirectory, KeepsASecondProcessOut) {
   const TemporaryDirectory dir;
   {
-    OutputDirectory first(dir.path(), OutputKind::run, "0123", false);
+    OutputDirectory first(dir.path(), OutputKind::run, {"0123"}, false);
     const OutputDirectory moved(std::move(first));
-    EXPECT_NE(io_error([&] { OutputDirectory(dir.path(), OutputKind::run, "0123", true); }).find("another process"),
+    EXPECT_NE(io_error([&] { OutputDirectory(dir.path(), OutputKind::run, {"0123"}, true); }).find("another process"),
               std::string::npos);
   }
-  EXPECT_NO_THROW(OutputDirectory(dir.path(), OutputKind::run, "0123", true));
+  EXPECT_NO_THROW(OutputDirectory(dir.path(), OutputKind::run, {"0123"}, true));
 }
 
 TEST(OutputDirectory, CleansUpAfterAKilledProcess) {
@@ -202,16 +227,16 @@ TEST(OutputDirectory, CleansUpAfterAKilledProcess) {
   // What a claim that was killed leaves behind: a lock file and half of the marker.
   write_file_atomically(dir / "talus-output.lock", "");
   write_file_atomically(dir / ".talus-output.json.tmp-1-0", "{");
-  { const OutputDirectory out(dir.path(), OutputKind::run, "0123", false); }
+  { const OutputDirectory out(dir.path(), OutputKind::run, {"0123"}, false); }
   // And a run: half of a result.
   write_file_atomically(dir / ".result.json.tmp-1-0", "{");
   write_file_atomically(dir / "notes.txt", "a person's own");
-  const OutputDirectory out(dir.path(), OutputKind::run, "0123", true);
+  const OutputDirectory out(dir.path(), OutputKind::run, {"0123"}, true);
   EXPECT_EQ(test::names_in(dir.path()), (Names{"notes.txt", "talus-output.json", "talus-output.lock"}));
 }
 
 TEST(OutputDirectory, NamesADirectoryThatCannotBeMade) {
-  const std::string message = io_error([&] { OutputDirectory("/proc/talus", OutputKind::run, "0", false); });
+  const std::string message = io_error([&] { OutputDirectory("/proc/talus", OutputKind::run, {"0"}, false); });
   EXPECT_NE(message.find("/proc/talus"), std::string::npos) << message;
 }
 
