@@ -114,8 +114,8 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
 }
 
 void print_end(const char* name, bool wall, Vec2 end, double wall_top) {
-  std::printf("%-18s %s at (%g, %g)", name, wall ? "wall" : "open", end.x, end.y);
-  if (wall) std::printf(" up to y = %g m", wall_top);
+  std::printf("%-18s %s at (%.10g, %.10g)", name, wall ? "wall" : "open", end.x, end.y);
+  if (wall) std::printf(" up to y = %.10g m", wall_top);
   std::printf("\n");
 }
 
@@ -131,8 +131,8 @@ void print_ground(const GroundReport& r, const Model& model) {
   const Terrain& t = model.terrain;
   if (!t.closed) print_end("left end", t.left_wall, t.bed.front(), t.wall_top);
   if (!t.closed) print_end("right end", t.right_wall, t.bed.back(), t.wall_top);
-  std::printf("slide              x = %g to %g m, y = %g to %g m, at most %.3g m thick (%.3g spacings)\n", r.slide.lo.x,
-              r.slide.hi.x, r.slide.lo.y, r.slide.hi.y, r.thickness, r.thickness / model.dx);
+  std::printf("slide              x = %.10g to %.10g m, y = %.10g to %.10g m, at most %.3g m thick (%.3g spacings)\n",
+              r.slide.lo.x, r.slide.hi.x, r.slide.lo.y, r.slide.hi.y, r.thickness, r.thickness / model.dx);
   std::printf("direction          to the %s\n", r.goes_right ? "right" : "left");
 }
 

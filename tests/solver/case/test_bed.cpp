@@ -79,6 +79,20 @@ TEST(JoinedBed, OfTheRoadSlopeIsTheOneJoinedByHand) {
   EXPECT_EQ(test::load(document).hash, by_program.hash);
 }
 
+/// Sections of real ground, whose beds were joined by other means; the files write millimetres.
+TEST(JoinedBed, OfRealSectionsIsTheBedGivenBesideThem) {
+  const std::filesystem::path sections = std::filesystem::path(TALUS_SOURCE_DIR) / "tests/validation/data/sections";
+  for (const char* name : {"alpine", "hill", "ledges", "river-bank", "scarp", "valley-side"}) {
+    std::ifstream file(sections / (std::string(name) + ".json"));
+    Json document = Json::parse(file);
+    const Points given = load_case(document, sections).value.model.terrain.bed;
+    document["terrain"].erase("bed_csv");
+    const Points bed = load_case(document, sections).value.model.terrain.bed;
+    ASSERT_EQ(bed.size(), given.size()) << name;
+    for (std::size_t k = 0; k < bed.size(); ++k) EXPECT_LT(norm(bed[k] - given[k]), 1e-3) << name << " " << k;
+  }
+}
+
 Json by_surfaces() {
   Json document = test::minimal();
   document.erase("terrain");
