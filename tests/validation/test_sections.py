@@ -14,7 +14,8 @@ import tempfile
 import numpy as np
 
 PENETRATION = 0.5  # depth below the bed, in spacings, that counts as inside the ground
-FRONT_99, FARTHEST = 3.0, 5.0  # largest differences of fronts (99 % of the particles; the farthest), in coarse spacings
+FRONTS = {"front_99": 3.0, "farthest": 5.0}  # largest differences of the fronts, in coarse spacings
+RUN_OUT_SHARE = 0.1  # the same as a share of the run-out; the larger limit counts
 MOVED = 2.0  # displacement of the centre of mass, in coarse spacings, below which a section shows nothing
 
 
@@ -56,9 +57,9 @@ def run(path, spacing, work):
     snapshots = Snapshots(directory)
     first, last = snapshots.position(0), snapshots.position(-1)
     moved = last[:, 0].mean() - first[:, 0].mean()
-    along = np.sign(moved) * last[:, 0]
+    before, after = (np.sign(moved) * snapshot[:, 0] for snapshot in (first, last))
     return {"result": result, "spacing": spacing, "depth": penetration(bed_of(path), last), "moved": abs(moved),
-            "front_99": np.quantile(along, 0.99), "farthest": along.max()}
+            "front_99": np.quantile(after, 0.99), "farthest": after.max(), "run_out": after.max() - before.max()}
 
 
 def faults_of_run(found):
@@ -71,10 +72,11 @@ def faults_of_run(found):
 
 
 def faults_of_pair(coarse, fine):
-    limits = {"front_99": FRONT_99, "farthest": FARTHEST}
-    differences = {name: abs(coarse[name] - fine[name]) / coarse["spacing"] for name in limits}
-    faults = [f"{name} differs by {difference:.2f} coarse spacings"
-              for name, difference in differences.items() if difference > limits[name]]
+    faults = []
+    for name, spacings in FRONTS.items():
+        limit = max(spacings * coarse["spacing"], RUN_OUT_SHARE * fine["run_out"])
+        if abs(coarse[name] - fine[name]) > limit:
+            faults.append(f"{name} {coarse[name]:.2f} m and {fine[name]:.2f} m: they differ by more than {limit:.2f} m")
     if fine["moved"] < MOVED * coarse["spacing"]:
         faults.append(f"the centre of mass moved by {fine['moved']:.3g} m only")
     return faults
