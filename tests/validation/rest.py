@@ -10,7 +10,7 @@ from snapshots import Snapshots
 
 TITLE = "Rest and the angle of failure"
 SOURCE = "closed forms: p = rho g depth; an infinite cohesionless layer fails at tan(theta) = tan(phi), with Eq. 7 as printed at sqrt(3) tan(phi)"
-NOT_MET = {"pile of 15 degrees, elastic, dx = 0.05 m": 0.7, "heap fails, paper shear rate [": 49.0}
+NOT_MET = {"pile of 15 degrees, elastic, dx = 0.05 m": 0.7, "heap fails, paper shear rate [": 53.0}
 REMARKS = ("The maximum displacement in the pile shrinks with the spacing, but less than in proportion, and its "
            "growth slows down; with the regularised model the pile creeps at a constant rate at every spacing. A "
            "heap of 20 rows (0.1 m) stands up to 5 degrees steeper than one of 40. A layer without ends fails in "
@@ -95,15 +95,15 @@ def slope(theta):
 
 
 def layer_fails(work, theta, spacing, norm):
-    """Whether the middle of the layer moves faster in the last half second than in the one before. The start is disturbed: particles placed
-    in level rows settle on the incline."""
+    """Whether the middle of the layer accelerates: in the last half second it moves farther than in the one before by more than 1 mm, which
+    gravity gives a layer 0.02 degrees steeper than phi. A layer that holds settles by some millimetres and then sways by tenths of one."""
     directory = work / f"layer-{norm}-{theta:g}-{spacing:g}"
     talus_runs.run(layer(theta, spacing, 2, shear_rate=norm), directory)
     snapshots, down = Snapshots(directory), slope(theta)[0]
     start = (snapshots.position(0)) @ down
     middle = np.abs(start - 0.5 * LENGTH) < 1
     way = [float((snapshots.field("displacement", step)[:, :2] @ down)[middle].mean()) for step in (-3, -2, -1)]
-    return way[2] - way[1] > way[1] - way[0]
+    return (way[2] - way[1]) - (way[1] - way[0]) > 1e-3
 
 
 def threshold(work, fails, spacing, norm, low, high, steps):

@@ -28,7 +28,7 @@ Soil particle(Vec2 x, Vec2 v, double tan_phi) {
 }
 
 GroundContact contact_with(Polyline line, WallFriction friction = {}) {
-  return {{std::move(line)}, {friction}, 1.0, 1};
+  return {{std::move(line)}, {friction}, 1.0, {3.0, -9.0}, 1};
 }
 const Polyline flat{{{-100, 0}, {100, 0}}, false};
 
@@ -39,6 +39,17 @@ TEST(GroundContact, TakesTheApproachAndFrictionsShareOfTheSliding) {
   EXPECT_DOUBLE_EQ(soil.y[0], 0.1);
   EXPECT_DOUBLE_EQ(soil.vy[0], 0.0);
   EXPECT_DOUBLE_EQ(soil.vx[0], 5 - 0.5 * 2);
+}
+
+TEST(GroundContact, CountsTheKineticAndThePotentialEnergyThatItTakes) {
+  Soil soil = particle({0, 0.02}, {5, -2}, 0.5);
+  soil.m[0] = 7;
+  GroundContact contact = contact_with(flat);
+  contact.act(soil, 0.1);
+  const double kinetic = 0.5 * 7 * (5 * 5 + 2 * 2 - 4 * 4), lift = 7 * 9.0 * 0.08;  // the sliding is slowed from 5 to 4
+  EXPECT_NEAR(contact.taken(), kinetic - lift, 1e-12);
+  contact.restore({0}, 10.0);
+  EXPECT_EQ(contact.taken(), 10.0);
 }
 
 TEST(GroundContact, FrictionStopsButDoesNotTurnBack) {
@@ -85,6 +96,29 @@ TEST(GroundContact, AParticleSlidesByCoulombsLaw) {  // a = g (sin 35 - cos 35 t
     contact.act(soil, dt * norm(soil.velocity(0)));
   }
   EXPECT_NEAR(norm(soil.velocity(0)), 2.0 * 9.81 * (std::sin(slope) - std::cos(slope) * tan_phi), 1e-9);
+}
+
+/// A block that falls over a cliff whose foot lies `lean` to the right of its crest.
+RunResult fall_over_cliff(double lean) {
+  Model m;
+  set_ground(m, {{{0, 10}, {10, 10}, {10 + lean, 0}, {40, 0}}, false, true, false, 16, 0});
+  m.slide = {{{{2, 10}, {10, 10}, {10, 13}, {2, 13}}, 0}};
+  m.materials = {{"soil", 2000, 20 * degree, 0, 0}};
+  m.dx = 0.5;
+  m.numerics.c_s = 60;
+  m.time.end = 4.0;
+  const ParticlePlan plan = plan_particles(m);
+  Simulation simulation(m, plan, material_properties(m, plan));
+  while (!simulation.finished()) simulation.step(m.time.end);
+  return simulation.result();
+}
+
+TEST(GroundContact, AVerticalFaceIsAsGoodAsOneThatLeans) {
+  const RunResult vertical = fall_over_cliff(0.0), leaning = fall_over_cliff(1e-6);
+  EXPECT_EQ(vertical.penetrated, 0);
+  EXPECT_GT(vertical.measures.influence_zone, 11.0) << "soil falls over the edge";
+  EXPECT_NEAR(vertical.measures.centre_of_mass_x, leaning.measures.centre_of_mass_x, 0.02);
+  EXPECT_NEAR(vertical.measures.influence_zone, leaning.measures.influence_zone, 0.5);
 }
 
 TEST(GroundContact, HoldsOnRandomBeds) {
