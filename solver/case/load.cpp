@@ -103,10 +103,10 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   for (Fault& warning : find_warnings(out.value)) out.warnings.push_back(std::move(warning));
   out.warnings = name_origins(std::move(out.warnings), applied);
   out.hash = case_hash(out.resolved);
-  out.bed_source = origins.bed.source;
   Json endless = out.resolved;
   for (const char* key : {"end_s", "snapshot_times_s"}) endless["time"].erase(key);
   out.hash_without_end = case_hash(endless);
+  out.bed_source = origins.bed.source;
   return out;
 }
 

@@ -12,6 +12,7 @@
 
 #include "material/constitutive_models-inl.hpp"
 #include "math/tensor-inl.hpp"
+#include "sph/energy-inl.hpp"
 #include "sph/flow_constants.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -27,6 +28,17 @@ HWY_INLINE void add_velocity_gradient(Gradient<Real>& L, Vector<Real> VF_v_ij, V
   L.yx = fnma(VF_v_ij.y, r_ij.x, L.yx);
   L.yy = fnma(VF_v_ij.y, r_ij.y, L.yy);
 }
+
+/// Density of a particle in all pair sums, V = m/rho: its own, but at least a quarter of rho0.
+/// Loose soil has no pressure to keep its density up (apply_tension_cutoff). With V = m/rho alone, particles that fly
+/// apart would reach rho = 0 and V without bound in finite time; with V bounded, their density decays and never
+/// vanishes. m = rho V stays, so that pairs conserve momentum.
+/// @param least  least_density(rho0)
+template <class Real>
+HWY_INLINE Real pair_density(Real rho, Real least) {
+  return max(rho, least);
+}
+HWY_INLINE double least_density(double rho0) { return 0.25 * rho0; }
 
 /// drho_i/dt = sum_j m_j (v_i - v_j) . grad_i W_ij                          [Z20] Eq. 1
 /// Adds the term of one neighbour, m_j = rho_j V_j. With rho_i instead of rho_j it is the volume form (Colagrossi &
@@ -92,7 +104,8 @@ struct FlowRateSums {
 /// Pressure, stress, and the rates of density and elastic stress.                [Z20] Eqs. 1, 3-10
 /// @param tan_phi  of the soil, or of the wall that it slides along
 /// @param at       the point, or the points of a cluster: q(), c(), constant(get) of its ConstitutiveParameters;
-///                 elastic() as the model needs it; set_stress(s, p), set_rates(drho, gamma_dot)
+///                 elastic() as the model needs it; set_stress(s, p), set_rates(drho, gamma_dot);
+///                 set_powers(f), which calls f(volume) for StressPowers where an evaluation measures them
 template <class Real, class Model, class Point>
 HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const FlowRates<Real>& rates, Real tan_phi,
                              Point&& at) {
@@ -109,10 +122,14 @@ HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const F
                                .tan_phi = tan_phi,
                                .eta = at.constant([](Parameters soil) { return soil.eta; }),
                                .two_G = at.constant([](Parameters soil) { return 2.0 * soil.G; })};
-  at.set_stress(cauchy(p, model.stress(state, at.elastic())), p);
+  const Deviator<Real> t = model.stress(state, at.elastic());
+  at.set_stress(cauchy(p, t), p);
   // drho/dt = -rho expansion + rho0 diffusion
   const Real rho0 = at.constant([](Parameters soil) { return soil.eos.rho0; });
   at.set_rates(rho0 * fnma(q + Real(1.0), rates.expansion, rates.diffusion), state.gamma_dot);
+  at.set_powers([&](Real V) HWY_ATTR {
+    return stress_powers(V, p, t, e, state.eta, trace(rates.L), rates.expansion, rates.diffusion, q);
+  });
 }
 
 }  // namespace talus::HWY_NAMESPACE
