@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <ostream>
 
 #include "case/vertices.hpp"
 #include "temporary_directory.hpp"
@@ -26,6 +27,7 @@ struct Dialect {
   const char* name;
   std::string text;
 };
+void PrintTo(const Dialect& dialect, std::ostream* out) { *out << dialect.name; }
 
 class CsvDialects : public ::testing::TestWithParam<Dialect> {};
 
