@@ -246,6 +246,11 @@ MeasureSample Store::measure_sample(const Job& job, const Measure& measure,
     sample.noise.insert(sample.noise.end(), replicates.begin(), replicates.end());
     if (!stop_half_width) {
       sample.values = column(db, done + " AND kind = 0 ORDER BY idx", job.number);
+      if (&measure == measure_table.data())
+        sample.censored = column(db,
+                                 "SELECT influence_zone_m FROM runs WHERE job = ? AND level = 0 AND kind = 0 AND "
+                                 "state = 'done' AND left_domain > 0",
+                                 job.number);
       return sample;
     }
     StopRule rule(stop_half_width);
@@ -253,22 +258,25 @@ MeasureSample Store::measure_sample(const Job& job, const Measure& measure,
     sample.quality = {};
     SQLite::Statement query =
         statement(db,
-                  "SELECT idx, iif(state = 'done', influence_zone_m, NULL), verdict, reason, " + key +
+                  "SELECT idx, iif(state = 'done', influence_zone_m, NULL), verdict, reason, left_domain > 0, " + key +
                       " FROM runs WHERE job = ? AND level = 0 AND kind = 0 AND state IN "
                       "('done', 'failed') ORDER BY idx",
                   job.number);
     while (!rule.size() && query.executeStep()) {
       std::int64_t index = 0;
       std::optional<double> influence_zone, value;
+      std::optional<std::int64_t> left;
       std::string reason;
       Record record{.done = true};
-      Row(query) >> index >> influence_zone >> record.verdict >> reason >> value;
+      Row(query) >> index >> influence_zone >> record.verdict >> reason >> left >> value;
       rule.add(index, influence_zone);
       sample.quality.add(influence_zone ? record : failed_record(index, reason));
       if (!influence_zone)
         ++sample.failed;
       else if (value)
         sample.values.push_back(*value);
+      if (value && influence_zone && left.value_or(0) > 0 && &measure == measure_table.data())
+        sample.censored.push_back(*value);
     }
     sample.complete = sample.complete || rule.size();
     return sample;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "case/outline.hpp"
 #include "case/sections.hpp"
@@ -24,6 +25,17 @@ void check_apart(const Model& model, const SourceLocations& origins, Faults& fau
           shared > model.dx * model.dx)
         faults.add(origins.outlines[b].source,
                    "overlaps " + origins.outlines[a].source + " by " + rounded(shared) + " m2");
+}
+
+/// A section that no computation fits: most often one vertex with another unit or another grid.
+bool check_extent(const Model& model, const SourceLocations& origins, Faults& faults) {
+  Box all = bounding_box(model.slide);
+  for (const Vec2& v : model.terrain.bed) all.include(v);
+  if (std::max(all.width(), all.height()) <= largest_extent) return true;
+  faults.add(origins.bed.source, "and the slide extend over " + rounded(all.width()) + " m along x and " +
+                                     rounded(all.height()) + " m along y; at most " + rounded(largest_extent) +
+                                     " m are allowed");
+  return false;
 }
 
 /// An open bed: the soil needs ground beneath it from one end to the other.
@@ -76,7 +88,7 @@ void check_counts(const Model& model, Faults& faults) {
 double energy_line_over(const Model& model, Vec2 end) {
   double phi = 1.5707;
   for (const Material& m : model.materials) phi = std::min(phi, m.phi);
-  double height = -1e6;
+  double height = -std::numeric_limits<double>::infinity();
   for (const SlidePart& part : model.slide)
     for (const Vec2& v : part.outline) height = std::max(height, v.y - std::tan(phi) * std::abs(end.x - v.x));
   return height - end.y;
@@ -122,6 +134,7 @@ void warn_of_few_particles(const Model& model, std::vector<Fault>& warnings) {
 }  // namespace
 
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults) {
+  if (!check_extent(model, origins, faults)) return;
   check_apart(model, origins, faults);
   for (std::size_t k = 0; k < model.slide.size(); ++k)
     check_on_ground(model.slide[k], origins.outlines[k], model, faults);

@@ -1,6 +1,5 @@
 #include "case/ground_report.hpp"
 
-#include "case/outline.hpp"
 #include "particles/geometry.hpp"
 
 namespace talus {
@@ -25,11 +24,13 @@ GroundReport report_ground(const LoadedCase& loaded) {
   const Model& model = loaded.value.model;
   const Polyline& line = model.boundaries.front().line;
   const Box box = bounding_box(model.slide);
-  const auto height = [&](double x) { return height_beneath(model.terrain.bed, {x, box.hi.y}); };
-  GroundReport report{loaded.bed_source, model.terrain.bed.size(), 0, fit_line(line, model.dx), box};
+  GroundReport report{loaded.bed_source,
+                      model.terrain.bed.size(),
+                      0,
+                      fit_line(line, model.dx),
+                      {box.lo + model.terrain.origin, box.hi + model.terrain.origin}};
   report.kept = report.fitted.line.vertices.size() - (line.vertices.size() - report.given);  // less the end walls
   report.thickness = greatest_thickness(model, box);
-  report.goes_right = height(box.lo.x) >= height(box.hi.x);
   return report;
 }
 

@@ -101,6 +101,7 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
   if (!faults.empty()) throw ConfigError(name_origins(faults.all(), applied));
   for (Fault& warning : find_warnings(out.value)) out.warnings.push_back(std::move(warning));
+  use_local_coordinates(out.value);
   out.warnings = name_origins(std::move(out.warnings), applied);
   out.hash = case_hash(out.resolved);
   Json endless = out.resolved;

@@ -19,7 +19,8 @@ struct CaseAlias {
   std::string_view name;
 };
 inline constexpr CaseAlias case_aliases[] = {{"study.realisations", "study.realizations"},
-                                             {"rheology.yield=regularised", "rheology.yield=regularized"}};
+                                             {"rheology.yield=regularised", "rheology.yield=regularized"},
+                                             {"terrain.left_boundary_m", "terrain.measured_from_m"}};
 
 /// Puts the present names into a document and into `--set` texts. An alias beside its present name in one document is
 /// left, and so reported as unknown.

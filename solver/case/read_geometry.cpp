@@ -1,6 +1,7 @@
 // The keys of terrain and slide: polylines, their shape, and the outlines between ground and slip surface.
 
 #include <algorithm>
+#include <cmath>
 
 #include "case/joined_bed.hpp"
 #include "case/outline.hpp"
@@ -12,6 +13,7 @@ namespace talus {
 namespace {
 
 constexpr Names<bool> ends[] = {{"wall", true}, {"open", false}};
+constexpr Names<SlidesTo> directions[] = {{"right", SlidesTo::right}, {"left", SlidesTo::left}};
 
 /// A ring whose first vertex is repeated at the end loses the repetition.
 void open_ring(Vertices& ring) {
@@ -126,13 +128,43 @@ void cut_outlines(ObjectReader& in, const Vertices& ground, const Vertices& slip
   in.record("outlines", std::move(resolved));
 }
 
+/// The way the bed falls from one end of the slide to the other; on level ground away from the wall at its end.
+SlidesTo downhill(ObjectReader& in, const Terrain& t, const SlideInput& slide, double dx) {
+  if (t.closed || t.bed.empty() || slide.parts.empty()) return SlidesTo::right;
+  const Box box = bounding_box(slide.parts);
+  const double fall = bed_height(t.bed, box.lo.x) - bed_height(t.bed, box.hi.x);
+  if (std::abs(fall) > 0.1 * dx) return fall > 0.0 ? SlidesTo::right : SlidesTo::left;
+  const auto stands = [&](const char* key, bool otherwise) {
+    const Json* end = in.find(key);
+    return end == nullptr ? otherwise : *end == "wall";
+  };
+  const bool held_left = stands("left_end", true) && box.lo.x < t.bed.front().x + dx;
+  const bool held_right = stands("right_end", false) && box.hi.x > t.bed.back().x - dx;
+  return held_right && !held_left ? SlidesTo::left : SlidesTo::right;
+}
+
+void read_run_out(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
+  t.run_out.to = downhill(in, t, slide, dx);
+  in.choice("slides_to", t.run_out.to, directions,
+            {"The way the slide goes and run-outs are measured.", "site",
+             "the side to which the bed falls from one end of the slide to the other; on level ground away from the "
+             "wall at the slide's end, otherwise right; right in a closed bed"});
+  if (!t.bed.empty()) {
+    const auto [left, right] = std::ranges::minmax(t.bed, {}, &Vec2::x);
+    t.run_out.from = t.run_out.to == SlidesTo::right ? left.x : right.x;
+  }
+  in.number("measured_from_m", t.run_out.from, coordinate,
+            {"x from which run-outs are measured, in the direction of slides_to.", "[Z20] section 4",
+             "the bed's uphill end: its least x, or its greatest if the slide goes to the left"});
+}
+
 /// By default 5 particle spacings over the slide and over the walled ends of the bed.
 void read_wall_top(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
-  const double highest = slide.parts.empty() ? -1e6 : bounding_box(slide.parts).hi.y;
-  const double left = t.left_wall && !t.bed.empty() ? t.bed.front().y : -1e6;
-  const double right = t.right_wall && !t.bed.empty() ? t.bed.back().y : -1e6;
+  const double highest = slide.parts.empty() ? coordinate.lo : bounding_box(slide.parts).hi.y;
+  const double left = t.left_wall && !t.bed.empty() ? t.bed.front().y : coordinate.lo;
+  const double right = t.right_wall && !t.bed.empty() ? t.bed.back().y : coordinate.lo;
   const double bed = std::max(left, right);
-  t.wall_top = std::clamp(std::max(highest, bed) + 5.0 * dx, -1e6, 1e6);
+  t.wall_top = std::clamp(std::max(highest, bed) + 5.0 * dx, coordinate.lo, coordinate.hi);
   in.number("wall_top_m", t.wall_top, coordinate,
             {"Height y of the top of the end walls; above the bed there. Open beds only.", "site",
              "5 particle spacings over the highest point of slide and walled bed ends"});
@@ -146,10 +178,14 @@ void read_ends(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx)
       if (in.find(key) != nullptr) in.fault(key, "has no meaning for a closed bed");
     return;
   }
+  t.left_wall = t.run_out.to == SlidesTo::right;
+  t.right_wall = !t.left_wall;
   in.choice("left_end", t.left_wall, ends,
-            {"What stands on the bed's first vertex: a vertical wall, or nothing. Open beds only.", "site"});
+            {"What stands on the bed's first vertex: a vertical wall, or nothing. Open beds only.", "site",
+             "wall, or open if the slide goes to the left"});
   in.choice("right_end", t.right_wall, ends,
-            {"What stands on the bed's last vertex: a vertical wall, or nothing. Open beds only.", "site"});
+            {"What stands on the bed's last vertex: a vertical wall, or nothing. Open beds only.", "site",
+             "open, or wall if the slide goes to the left"});
   read_wall_top(in, t, slide, dx);
 }
 
@@ -225,9 +261,7 @@ void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& dir
   t.bed = bed.points;
   if (t.closed && signed_area(t.bed) < 0.0) std::reverse(t.bed.begin(), t.bed.end());
   in.record("bed_m", to_json(t.bed));
-  if (sound) t.left_boundary = std::ranges::min(t.bed, {}, &Vec2::x).x;
-  in.number("left_boundary_m", t.left_boundary, coordinate,
-            {"x from which influence zones are measured.", "[Z20] section 4", "least x of the bed"});
+  read_run_out(in, t, slide, dx);
   read_ends(in, t, slide, dx);
 }
 

@@ -52,6 +52,12 @@ void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& dir
 void read_field(ObjectReader& in, FieldSpec& spec);
 void read_study(ObjectReader& in, StudySpec& s);
 
+// local_coordinates.cpp
+/// Takes the lower left corner of the slide off the coordinates where it lies more than ten extents of the case from
+/// zero, along each axis for itself (Terrain::origin), and rounds what is left to the micrometre. The same case moved
+/// then gives the same bits, on any national grid.
+void use_local_coordinates(Case& c);
+
 // checks.cpp: whether slide, bed, walls and field fit one another
 /// Slide parts apart from one another, above the bed, between its ends; as many particles as allowed.
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults);

@@ -139,7 +139,7 @@ void declare_vertices(ObjectReader& in, const std::string& inline_key, const std
   const Json point = {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", number_schema(coordinate)}};
   in.declare(inline_key, {{"type", "array"}, {"minItems", count.least}, {"maxItems", count.most}, {"items", point}},
              text,
-             "Unit: m; range: each coordinate >= -1e6 and <= 1e6, " + std::to_string(count.least) + " to " +
+             "Unit: m; range: each coordinate >= -1e8 and <= 1e8, " + std::to_string(count.least) + " to " +
                  std::to_string(count.most) + " vertices; ");
   in.declare(
       csv_key, {{"type", "string"}, {"minLength", 1}, {"pattern", R"(^[^./\\][^/\\]*(/[^./\\][^/\\]*)*$)"}},

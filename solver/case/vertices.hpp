@@ -11,7 +11,8 @@
 
 namespace talus {
 
-inline constexpr Quantity coordinate{"m", -1e6, 1e6};  ///< range of every x and y of a case
+inline constexpr Quantity coordinate{"m", -1e8, 1e8};  ///< range of every x and y of a case: any national grid
+constexpr double largest_extent = 2e6;                 ///< of bed and slide together along x and along y [m]
 
 /// Most vertices of one polyline.
 constexpr std::size_t most_vertices = 20'000;

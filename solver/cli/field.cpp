@@ -91,8 +91,10 @@ std::string subtitle(const FieldSummary& field, const FieldOptions& options) {
 void write(const FieldOnParticles& field, const Model& model, const figures::Stamps& stamps, const fs::path& path) {
   const std::vector<double>& tan_phi = field.strength.properties.tan_phi;
   const std::vector<NamedArray> arrays{{"friction_angle_deg", field.phi_deg}, {"tan_phi", tan_phi}};
-  if (path.extension() == ".csv") return write_field_csv(path, field.position, arrays);
-  if (path.extension() == ".vtkhdf") return write_points(path, field.position, arrays);
+  std::vector<Vec2> published = field.position;
+  for (Vec2& x : published) x += model.terrain.origin;
+  if (path.extension() == ".csv") return write_field_csv(path, published, arrays);
+  if (path.extension() == ".vtkhdf") return write_points(path, published, arrays);
   Frame frame;
   frame.n_soil = field.position.size();
   frame.position = field.position;

@@ -33,8 +33,8 @@ struct ProfileOptions {
 Json columns(const Frame& frame) {
   Json x = Json::array(), y = x, moved = x, speed = x, phi = x;
   for (std::size_t i = 0; i < frame.n_soil; ++i) {
-    x.push_back(frame.position[i].x);
-    y.push_back(frame.position[i].y);
+    x.push_back(frame.position[i].x + frame.origin.x);
+    y.push_back(frame.position[i].y + frame.origin.y);
     moved.push_back(std::hypot(frame.displacement[i].x, frame.displacement[i].y));
     speed.push_back(std::hypot(frame.velocity[i].x, frame.velocity[i].y));
     phi.push_back(friction_angle_deg(frame.tan_phi[i]));

@@ -93,7 +93,8 @@ int terminal_width() {
 
 std::string study_report(const Json& study) {
   const std::string quality = study.contains("quality") ? quality_line(study.at("quality")) : "";
-  return (quality.empty() ? "" : quality + "\n") + summary_table(study) + "\nrun-out distance [m] (influence_zone_m)\n" +
+  return (quality.empty() ? "" : quality + "\n") + summary_table(study) +
+         "\nrun-out distance [m] (influence_zone_m)\n" +
          text_histogram(study.at("quantities").at(measure_table[0].key), 80);
 }
 
@@ -111,14 +112,24 @@ std::string summary_table(const Json& study) {
           " deg\n\n";
   text += format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", "", "mean", "95 % interval", "stdev", "95 % interval",
                  "floor", "median", "q95");
+  const auto at_least = [](bool lower_bound) { return std::string(lower_bound ? ">=" : ""); };
   for (const auto& [key, q] : study.at("quantities").items()) {
     const Json* median = quantile(q, 0.5);
     const Json* high = quantile(q, 0.95);
-    text += format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", key.c_str(), number(q.at("mean")).c_str(),
-                   interval(q.at("mean_ci95")).c_str(), number(q.at("stdev")).c_str(),
-                   interval(q.at("stdev_ci95")).c_str(), number(q.at("noise_floor_stdev")).c_str(),
-                   median ? number(median->at("value")).c_str() : "-", high ? number(high->at("value")).c_str() : "-");
+    const auto of = [&](const Json* at) {
+      return at == nullptr ? std::string("-") : at_least(at->value("at_least", false)) + number(at->at("value"));
+    };
+    text +=
+        format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", key.c_str(),
+               (at_least(q.value("mean_at_least", false)) + number(q.at("mean"))).c_str(),
+               interval(q.at("mean_ci95")).c_str(), number(q.at("stdev")).c_str(), interval(q.at("stdev_ci95")).c_str(),
+               number(q.at("noise_floor_stdev")).c_str(), of(median).c_str(), of(high).c_str());
   }
+  const Json& runout = study.at("quantities").at(measure_table[0].key);
+  if (const auto censored = runout.find("censored"); censored != runout.end() && censored->is_object())
+    text +=
+        format("soil left the terrain in %lld realizations, from %.2f m on: they may have gone any distance beyond\n",
+               censored->at("runs").get<long long>(), censored->at("from").get<double>());
   return text + "floor: standard deviation of the numerical noise; a stdev near it says nothing about the soil\n";
 }
 

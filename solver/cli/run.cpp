@@ -58,8 +58,8 @@ class ProgressLine {
   double next_ = 0.5;
 };
 
-void print_summary(const RunResult& r, std::uint64_t seed) {
-  std::printf("x from the left boundary\n");
+void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t seed) {
+  std::printf("distances from x = %.10g m to the %s\n", axis.from, axis.to == SlidesTo::right ? "right" : "left");
   for (const Measure& measure : measure_table)
     std::printf("%-26s%10.3f %s%s\n", ((measure.front ? "front, " : "") + std::string(measure.label)).c_str(),
                 r.measures.*measure.member, measure.unit,
@@ -96,6 +96,8 @@ Exit run(const RunOptions& options) {
                        .show_progress = [&](const Simulation& s, double elapsed) { progress.show(s, end, elapsed); },
                        .continued = say_continued};
   catch_stop_signals(!options.study_worker);
+  RunOutAxis axis = loaded.value.model.terrain.run_out;
+  axis.from += loaded.value.model.terrain.origin.x;
   const RunOutcome outcome = run_realization(std::move(loaded),
                                              {.directory = options.out,
                                               .resume = options.resume,
@@ -113,7 +115,7 @@ Exit run(const RunOptions& options) {
     return Exit::interrupted;
   }
   if (options.json) std::cout << outcome.document;
-  if (verbose) print_summary(outcome.result, seed);
+  if (verbose) print_summary(outcome.result, axis, seed);
   if (outcome.result.penetrated > 0 && !options.study_worker)
     std::cerr << "warning: " << outcome.result.penetrated
               << " particles were deeper than half a spacing in the ground: do not trust this run\n";

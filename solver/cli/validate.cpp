@@ -69,6 +69,8 @@ Json to_json(const std::vector<Fault>& faults) {
 
 void print_json(const Json& value) { std::cout << value.dump(2, ' ', false, Json::error_handler_t::replace) << "\n"; }
 
+const char* way(const RunOutAxis& axis) { return axis.to == SlidesTo::right ? "right" : "left"; }
+
 Json end_json(bool wall, Vec2 end, double wall_top) {
   Json out = {{"kind", wall ? "wall" : "open"}, {"x_m", end.x}, {"y_m", end.y}};
   if (wall) out["top_m"] = wall_top;
@@ -82,17 +84,20 @@ Json to_json(const GroundReport& r, const Terrain& terrain) {
               {"moved_m", r.fitted.moved},
               {"notches", {{"filled", r.fitted.notches}, {"deepest_m", r.fitted.deepest_notch}}}};
   if (terrain.closed) return out;
-  out["left_end"] = end_json(terrain.left_wall, terrain.bed.front(), terrain.wall_top);
-  out["right_end"] = end_json(terrain.right_wall, terrain.bed.back(), terrain.wall_top);
+  out["left_end"] =
+      end_json(terrain.left_wall, terrain.bed.front() + terrain.origin, terrain.wall_top + terrain.origin.y);
+  out["right_end"] =
+      end_json(terrain.right_wall, terrain.bed.back() + terrain.origin, terrain.wall_top + terrain.origin.y);
   return out;
 }
 
-Json slide_json(const GroundReport& r, double dx) {
+Json slide_json(const GroundReport& r, const Model& model) {
   return {{"x_m", {r.slide.lo.x, r.slide.hi.x}},
           {"y_m", {r.slide.lo.y, r.slide.hi.y}},
           {"thickness_m", r.thickness},
-          {"thickness_spacings", r.thickness / dx},
-          {"direction", r.goes_right ? "right" : "left"}};
+          {"thickness_spacings", r.thickness / model.dx},
+          {"slides_to", way(model.terrain.run_out)},
+          {"measured_from_m", model.terrain.run_out.from + model.terrain.origin.x}};
 }
 
 Json to_json(const LoadedCase& loaded, const Demand& d) {
@@ -107,7 +112,7 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
   const Model& model = loaded.value.model;
   const GroundReport report = report_ground(loaded);
   out["ground"] = to_json(report, model.terrain);
-  out["slide"] = slide_json(report, model.dx);
+  out["slide"] = slide_json(report, model);
   if (d.captured_variance) out["field"] = {{"terms", d.field_terms}, {"captured_variance", *d.captured_variance}};
   out["warnings"] = to_json(loaded.warnings);
   return out;
@@ -129,11 +134,10 @@ void print_ground(const GroundReport& r, const Model& model) {
     std::printf("                   %d %s narrower than a particle filled, at most %.2g m deep\n", f.notches,
                 f.notches == 1 ? "notch" : "notches", f.deepest_notch);
   const Terrain& t = model.terrain;
-  if (!t.closed) print_end("left end", t.left_wall, t.bed.front(), t.wall_top);
-  if (!t.closed) print_end("right end", t.right_wall, t.bed.back(), t.wall_top);
+  if (!t.closed) print_end("left end", t.left_wall, t.bed.front() + t.origin, t.wall_top + t.origin.y);
+  if (!t.closed) print_end("right end", t.right_wall, t.bed.back() + t.origin, t.wall_top + t.origin.y);
   std::printf("slide              x = %.10g to %.10g m, y = %.10g to %.10g m, at most %.3g m thick (%.3g spacings)\n",
               r.slide.lo.x, r.slide.hi.x, r.slide.lo.y, r.slide.hi.y, r.thickness, r.thickness / model.dx);
-  std::printf("direction          to the %s\n", r.goes_right ? "right" : "left");
 }
 
 void print_text(const LoadedCase& loaded, const Demand& d) {
@@ -141,7 +145,10 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
   print_ground(report_ground(loaded), loaded.value.model);
   std::printf("particles          %zu soil + %zu wall\n", d.soil, d.wall);
   std::printf("mass               %.0f kg/m, %+.2f %% of the outlines'\n", d.mass.filled,
-              100.0 * (d.mass.filled / d.mass.outline - 1.0));
+              std::round(1e4 * (d.mass.filled / d.mass.outline - 1.0)) / 100.0 + 0.0);
+  const RunOutAxis& axis = loaded.value.model.terrain.run_out;
+  std::printf("slides to          the %s; run-outs from x = %.10g m\n", way(axis),
+              axis.from + loaded.value.model.terrain.origin.x);
   std::printf("time step          %.3g s%s\n", d.step,
               loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");
   std::printf("steps              about %.0f to %.4g s\n", d.steps, loaded.value.model.time.end);

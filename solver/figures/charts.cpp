@@ -28,9 +28,10 @@ void mark_quantile(Script& script, const StudyFiles& study, double quantile, con
   const auto found = q.quantiles.find(quantile);
   if (found == q.quantiles.end() || (1.0 - quantile) * static_cast<double>(study.done) < 5 - 1e-9) return;
   const double x = found->second;
-  script("set label ", literal(std::string(name) + ": " + fixed(x, 2) + " m"), " at ", x, ",", 1.0 - quantile,
-         " left offset 1.2,0.5 front point pointtype 7 pointsize 0.6 linecolor rgb '", vermillion, "' textcolor rgb '",
-         ink, "'");
+  const bool at_least = q.censored > 0 && x >= q.censored_from;
+  script("set label ", literal(std::string(name) + (at_least ? ": at least " : ": ") + fixed(x, 2) + " m"), " at ", x,
+         ",", 1.0 - quantile, " left offset 1.2,0.5 front point pointtype 7 pointsize 0.6 linecolor rgb '", vermillion,
+         "' textcolor rgb '", ink, "'");
 }
 
 // n, mean, lower and upper end of the interval of the first n realizations done, at most some 300 times.
@@ -79,17 +80,24 @@ std::string interval_text(const std::optional<double>& value, const std::optiona
   return text + " m";
 }
 
+std::string censored_text(const Quantity& q) {
+  if (q.censored == 0) return "";
+  return ". " + std::to_string(q.censored) + " runs left the terrain from " + fixed(q.censored_from, 2) +
+         " m on and count as beyond it";
+}
+
 Sheet exceedance_sheet(const StudyFiles& study) {
   Sheet sheet =
       chart(study, std::string("Probability that the run-out exceeds x, given failure. Band: 95 % (Wilson)") +
-                       (study.failed > 0 ? ", widened to allow for failed runs (none to all of them exceed x)" : ""));
+                       (study.failed > 0 ? ", widened to allow for failed runs (none to all of them exceed x)" : "") +
+                       censored_text(study.runout()));
   Rows rows;
   for (const Exceedance& e : study.runout().exceedance) rows.push_back({e.x, e.p, e.lo, e.hi});
   sheet.script.data("curve", rows);
   const double lo = rows.empty() ? 0.0 : rows.front()[0];
   const double hi = rows.empty() ? 1.0 : rows.back()[0];
   const double room = hi > lo ? 0.06 * (hi - lo) : 1.0;
-  sheet.axes({lo - room, hi + 3 * room, nice_step(hi - lo + 4 * room, 8), "x (m), from the left boundary"},
+  sheet.axes({lo - room, hi + 3 * room, nice_step(hi - lo + 4 * room, 8), "run-out distance x (m)"},
              {0, 1.02, 0.1, "probability of exceedance"});
   mark_quantile(sheet.script, study, 0.5, "half of the runs");
   mark_quantile(sheet.script, study, 0.9, "1 in 10");
@@ -101,8 +109,9 @@ Sheet exceedance_sheet(const StudyFiles& study) {
 
 Sheet running_mean_sheet(const StudyFiles& study) {
   const Quantity& q = study.runout();
-  Sheet sheet = chart(study, "Mean run-out distance of the first n runs: " + interval_text(q.mean, q.mean_ci95) +
-                                 ". Band: 95 % interval (Student)");
+  Sheet sheet =
+      chart(study, std::string("Mean run-out distance of the first n runs") + (q.censored > 0 ? ", at least: " : ": ") +
+                       interval_text(q.mean, q.mean_ci95) + ". Band: 95 % interval (Student)");
   const Rows rows = running_means(study.realizations);
   if (rows.empty()) return sheet;
   const auto [n, mean, lo, hi] = rows.back();

@@ -35,6 +35,8 @@ Sheet chart(const StudyFiles& study, std::string_view subtitle, const Canvas& ca
 std::string count_text(const StudyFiles& study);
 
 /// "34.12 [33.98, 34.26] m"; "unknown", or without the interval, where the sample is too small.
+/// What a subtitle says of runs whose soil left the terrain; empty without any.
+std::string censored_text(const Quantity& q);
 std::string interval_text(const std::optional<double>& value, const std::optional<Interval>& interval);
 
 }  // namespace talus::figures

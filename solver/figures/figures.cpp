@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using namespace figures;
 
 constexpr std::size_t panels = 6;  // of a sequence, at most
-constexpr const char* speed_words = "Speed of the soil. Front: farthest particle, measured from the left boundary";
+constexpr const char* speed_words = "Speed of the soil. Front: run-out distance of the farthest particle";
 
 // Draws into DIR/figures and remembers what.
 class Album {

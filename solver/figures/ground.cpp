@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "figures/colour.hpp"
+#include "support/text.hpp"
 
 namespace talus::figures {
 namespace {
@@ -74,6 +76,11 @@ GroundElements ground_elements(Script& script, const Terrain& terrain, const Box
   elements.front = {"$hatch" + tag + " using 1:2:3:4 with vectors nohead linewidth 0.6 linecolor rgb '" + faint + "'",
                     line("line" + tag, ink, 2.2)};
   return elements;
+}
+
+std::string axis_label(const char* name, double origin) {
+  if (origin == 0.0) return std::string(name) + " (m)";
+  return std::string(name) + (origin > 0.0 ? " - " : " + ") + to_text(std::abs(origin)) + " (m)";
 }
 
 }  // namespace talus::figures

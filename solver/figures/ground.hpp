@@ -24,6 +24,9 @@ struct Stroke {
 /// Strokes every `spacing` along `line`, of length `length`, on its right side and leaning back by 45 degrees.
 std::vector<Stroke> hatching(const std::vector<Vec2>& line, double spacing, double length);
 
+/// Label of an axis in local coordinates: "x (m)", or "x - 2683000 (m)" where Terrain::origin is not 0.
+std::string axis_label(const char* name, double origin);
+
 /// Plot elements of the ground, and the data of them in the script.
 struct GroundElements {
   std::vector<std::string> behind;  ///< fill, to be plotted before the soil

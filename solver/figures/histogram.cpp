@@ -76,7 +76,7 @@ void draw_histogram(Sheet& sheet, const Quantity& q, const Axis& x) {
 
 void draw_strip(Sheet& sheet, const std::vector<Bar>& bars, Axis x) {
   sheet.script("unset label");
-  x.label = "run-out distance (m): farthest particle, from the left boundary";
+  x.label = "run-out distance (m) of the farthest particle";
   sheet.axes(x, {0.4, 3.6, 0, ""});
   sheet.script("set border 1");
   sheet.script("set format x '%g'");
@@ -98,9 +98,10 @@ void draw_strip(Sheet& sheet, const std::vector<Bar>& bars, Axis x) {
 Sheet histogram_sheet(const StudyFiles& study) {
   const Quantity& q = study.runout();
   Sheet sheet = chart(study,
-                      "Mean " + interval_text(q.mean, q.mean_ci95) + ", standard deviation " +
-                          interval_text(q.stdev, q.stdev_ci95) + ", numerical noise " +
-                          (q.noise_floor_stdev ? fixed(1000 * *q.noise_floor_stdev, 2) + " mm" : "not measured"),
+                      std::string(q.censored > 0 ? "Mean at least " : "Mean ") + interval_text(q.mean, q.mean_ci95) +
+                          ", standard deviation " + interval_text(q.stdev, q.stdev_ci95) + ", numerical noise " +
+                          (q.noise_floor_stdev ? fixed(1000 * *q.noise_floor_stdev, 2) + " mm" : "not measured") +
+                          censored_text(q),
                       {900, 616});
   const std::vector<Bar> bars = strip_bars(q);
   const Axis x = x_axis(q, bars);

@@ -19,10 +19,13 @@ constexpr double beneath = 86;   // px: x tics, label, source line
 
 // The slide, the terrain, and what the runs reached.
 Box view(const Quantity& q, const Terrain& terrain, std::span<const SlidePart> slide) {
-  Box box{{terrain.left_boundary, 1e300}, {terrain.left_boundary, -1e300}};
+  Box box{{terrain.run_out.from, 1e300}, {terrain.run_out.from, -1e300}};
   for (const SlidePart& part : slide)
     for (const Vec2 p : part.outline) box.include(p);
-  for (const Exceedance& e : q.exceedance) box.hi.x = std::max(box.hi.x, terrain.left_boundary + e.x);
+  for (const Exceedance& e : q.exceedance) {
+    box.lo.x = std::min(box.lo.x, terrain.run_out.x(e.x));
+    box.hi.x = std::max(box.hi.x, terrain.run_out.x(e.x));
+  }
   const double margin = 0.03 * box.width();
   box.lo.x -= margin;
   box.hi.x += margin;
@@ -36,15 +39,16 @@ Box view(const Quantity& q, const Terrain& terrain, std::span<const SlidePart> s
   return box;
 }
 
-// x, p, lo, hi from the left edge of the view to its right edge.
-std::vector<std::array<double, 4>> curve(const Quantity& q, double boundary_x, const Box& box) {
+// x, p, lo, hi from the uphill edge of the view to the other.
+std::vector<std::array<double, 4>> curve(const Quantity& q, const RunOutAxis& axis, const Box& box) {
   std::vector<std::array<double, 4>> rows;
   if (q.exceedance.empty()) return rows;
   const auto row = [](double x, const Exceedance& e) { return std::array{x, e.p, e.lo, e.hi}; };
+  const bool to_right = axis.to == SlidesTo::right;
   // A run that goes farther than the first x reaches everything before it.
-  rows.push_back(row(box.lo.x, q.exceedance.front()));
-  for (const Exceedance& e : q.exceedance) rows.push_back(row(boundary_x + e.x, e));
-  rows.push_back(row(box.hi.x, q.exceedance.back()));
+  rows.push_back(row(to_right ? box.lo.x : box.hi.x, q.exceedance.front()));
+  for (const Exceedance& e : q.exceedance) rows.push_back(row(axis.x(e.x), e));
+  rows.push_back(row(to_right ? box.hi.x : box.lo.x, q.exceedance.back()));
   return rows;
 }
 
@@ -56,14 +60,17 @@ Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std
   const double metre = std::min((right - left) / box.width(), tallest / box.height());
   const double edge = left + metre * box.width();
   const double terrain_bottom = curve_bottom + gap + metre * box.height();
-  Sheet sheet = chart(study,
-                      "Probability that the front reaches x, given failure (band: 95 %, Wilson); below: terrain and "
-                      "slide before failure",
-                      {std::round(edge + 28), std::round(terrain_bottom + beneath)});
+  Sheet sheet =
+      chart(study,
+            std::string() +
+                "Probability that the front reaches x, given failure (band: 95 %, Wilson); below: terrain and "
+                "slide before failure" +
+                censored_text(q),
+            {std::round(edge + 28), std::round(terrain_bottom + beneath)});
   Script& script = sheet.script;
   Axis x{box.lo.x, box.hi.x, nice_step(box.width(), edge - left, 90), ""};
 
-  script.data("curve", curve(q, terrain.left_boundary, box));
+  script.data("curve", curve(q, terrain.run_out, box));
   sheet.axes(x, {0, 1.04, 0.2, "probability"});
   script("set format x ''");
   sheet.place({left, edge, curve_top, curve_bottom});
@@ -73,8 +80,10 @@ Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std
 
   script("unset label");
   script("set format x '%g'");
-  x.label = "x (m)";
-  sheet.axes(x, {box.lo.y, box.hi.y, nice_step(box.height(), metre * box.height(), 50), "y (m)"});
+  const std::string label = axis_label("x", terrain.origin.x);
+  x.label = label;
+  sheet.axes(
+      x, {box.lo.y, box.hi.y, nice_step(box.height(), metre * box.height(), 50), axis_label("y", terrain.origin.y)});
   sheet.place({left, edge, curve_bottom + gap, terrain_bottom});
   const GroundElements bed = ground_elements(script, terrain, box, metre, "");
   std::vector<std::string> elements = bed.behind;

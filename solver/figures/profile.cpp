@@ -62,7 +62,8 @@ SoilElements soil_disks(const Drawing& d, const Snapshot& shot, const std::strin
 // A dashed line at the farthest particle, up to just above the soil there.
 std::string front_element(const Drawing& d, const Frame& frame, const std::string& tag) {
   const std::span<const Vec2> soil = std::span(frame.position).first(frame.n_soil);
-  const Vec2 front = *std::ranges::max_element(soil, {}, &Vec2::x);
+  const RunOutAxis& axis = d.terrain.run_out;
+  const Vec2 front = *std::ranges::max_element(soil, {}, [&](Vec2 p) { return axis.distance(p.x); });
   const double reach = 52 / d.layout.metre;
   double top = front.y;
   for (const Vec2 p : soil)
@@ -70,8 +71,8 @@ std::string front_element(const Drawing& d, const Frame& frame, const std::strin
   top = std::min(top + 12 / d.layout.metre, d.view.hi.y - 14 / d.layout.metre);
   const double bottom = d.terrain.closed || d.terrain.bed.empty() ? front.y : height_beneath(d.terrain.bed, front);
   d.sheet.script.data("front" + tag, std::array{Vec2{front.x, bottom}, Vec2{front.x, top}});
-  d.sheet.script("set label ", literal("front " + fixed(front.x - d.terrain.left_boundary, 2) + " m"), " at ", front.x,
-                 ",", top, " center offset 0,0.7 front font 'sans-serif:Bold,10' textcolor rgb '", vermillion, "'");
+  d.sheet.script("set label ", literal("front " + fixed(axis.distance(front.x), 2) + " m"), " at ", front.x, ",", top,
+                 " center offset 0,0.7 front font 'sans-serif:Bold,10' textcolor rgb '", vermillion, "'");
   return line("front" + tag, vermillion, 1.2, true);
 }
 
@@ -85,8 +86,9 @@ void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRan
   const Panel& panel = d.layout.panels[k];
   const std::string tag = std::to_string(k);
   d.sheet.place(panel);
-  d.sheet.axes({d.view.lo.x, d.view.hi.x, nice_step(d.view.width(), panel.width(), 90), "x (m)"},
-               {d.view.lo.y, d.view.hi.y, nice_step(d.view.height(), panel.height(), 50), "y (m)"});
+  d.sheet.axes(
+      {d.view.lo.x, d.view.hi.x, nice_step(d.view.width(), panel.width(), 90), axis_label("x", d.terrain.origin.x)},
+      {d.view.lo.y, d.view.hi.y, nice_step(d.view.height(), panel.height(), 50), axis_label("y", d.terrain.origin.y)});
   d.sheet.script("set xlabel offset 0,0.4");
   d.sheet.script("set ylabel offset 0.8,0");
   const std::string caption = shot.caption.empty() ? "t = " + fixed(shot.frame->time, 2) + " s" : shot.caption;
@@ -123,11 +125,15 @@ Box view_of(std::span<const Frame* const> frames, const Terrain& terrain, double
   if (terrain.closed || box.lo.x > box.hi.x)
     for (const Vec2 p : terrain.bed) box.include(p);
   const double margin = 0.03 * box.width() + dx;
-  box.lo.x = std::min(box.lo.x, terrain.left_boundary) - margin;
-  box.hi.x += 3 * margin;
+  const bool to_right = terrain.run_out.to == SlidesTo::right;
+  box.lo.x = (to_right ? std::min(box.lo.x, terrain.run_out.from) : box.lo.x - 2 * margin) - margin;
+  box.hi.x = (to_right ? box.hi.x + 2 * margin : std::max(box.hi.x, terrain.run_out.from)) + margin;
   if (!terrain.closed && !terrain.bed.empty()) {
     // Soil that fell off an open end does not stretch the picture.
-    box.hi.x = std::min(box.hi.x, terrain.bed.back().x + margin);
+    if (to_right)
+      box.hi.x = std::min(box.hi.x, terrain.bed.back().x + margin);
+    else
+      box.lo.x = std::max(box.lo.x, terrain.bed.front().x - margin);
     box.lo.y = 1e300;
     for (const Vec2 p : boundary(terrain, box.lo.x, box.hi.x)) box.lo.y = std::min(box.lo.y, p.y);
   }

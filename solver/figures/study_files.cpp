@@ -38,6 +38,10 @@ Quantity read_quantity(const Json& node) {
         {.x = e.at("x"), .k = e.at("k"), .n = e.at("n"), .p = e.at("p"), .lo = e.at("lo"), .hi = e.at("hi")});
   for (const Json& quantile : node.value("quantiles", Json::array()))
     q.quantiles[quantile.at("p")] = quantile.at("value");
+  if (const auto censored = node.find("censored"); censored != node.end() && censored->is_object()) {
+    q.censored = censored->at("runs");
+    q.censored_from = censored->at("from");
+  }
   return q;
 }
 

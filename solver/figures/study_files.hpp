@@ -23,6 +23,8 @@ struct Quantity {
   std::vector<Exceedance> exceedance;  ///< in order of x
   std::optional<double> noise_floor_stdev;
   std::map<double, double> quantiles;  ///< value at probability
+  std::int64_t censored = 0;           ///< runs whose soil left the terrain
+  double censored_from = 0.0;          ///< the least run-out of them [m]
 };
 
 /// A finished realization.

@@ -152,6 +152,9 @@ Frame read_frame(const fs::path& path, std::size_t index) {
   Frame frame;
   frame.time = times[index];
   frame.step = hdf5::read_rows<std::int64_t>(file, "talus/step", index, 1)[0];
+  if (const hdf5::Id grid = hdf5::open_group(file, "VTKHDF"); hdf5::has_attribute(grid, vtkhdf::origin_attributes[0]))
+    frame.origin = {hdf5::read_attribute<double>(grid, vtkhdf::origin_attributes[0]),
+                    hdf5::read_attribute<double>(grid, vtkhdf::origin_attributes[1])};
   frame.n_soil = static_cast<std::size_t>(std::count(walls.begin(), walls.end(), 0));
   std::apply([n](auto&... array) { (array.resize(n), ...); }, vtkhdf::arrays_of(frame));
   for (const vtkhdf::Field& f : vtkhdf::fields) {

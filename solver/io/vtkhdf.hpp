@@ -5,7 +5,9 @@
 //
 // Arrays at every step of n particles (float32): Points [m], velocity [m/s], displacement [m], each (n, 3); stress (n,
 // 6) [Pa; XX YY ZZ XY YZ XZ, positive in tension]; density [kg/m3], pressure [Pa], friction_angle_deg, shear_rate
-// [1/s], each (n). Stored once (int32): is_wall, id, each (n). Not thread-safe (HDF5).
+// [1/s], each (n). Stored once (int32): is_wall, id, each (n). Points of a case
+// far from zero (Terrain::origin) are local: the attributes origin_x_m and origin_y_m of VTKHDF must be added to them.
+// Not thread-safe (HDF5).
 
 #include <cstddef>
 #include <filesystem>

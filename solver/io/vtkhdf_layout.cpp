@@ -84,6 +84,12 @@ void write_grid(hid_t root, std::size_t n, std::array<std::int64_t, 2> version) 
 void create_skeleton(hid_t root, const Frame& first) {
   const std::size_t n = first.position.size();
   write_grid(root, n, temporal_version);
+  // Single precision would lose the decimetres of a national grid.
+  if (first.origin != Vec2{}) {
+    const hdf5::Id grid = hdf5::open_group(root, "VTKHDF");
+    hdf5::write_attribute<double>(grid, origin_attributes[0], first.origin.x);
+    hdf5::write_attribute<double>(grid, origin_attributes[1], first.origin.y);
+  }
   for (const char* group : {"VTKHDF/PointData", "VTKHDF/Steps", "VTKHDF/Steps/PointDataOffsets", "talus"})
     hdf5::create_group(root, group);
   for (const Field& f : fields)

@@ -79,6 +79,9 @@ inline constexpr std::array<const char*, 2> constant_fields = {"is_wall", "id"};
 
 inline constexpr std::size_t max_chunk = 65536;  ///< rows compressed together
 
+/// Attributes of VTKHDF: x and y that must be added to the points [m]; absent where both are 0.
+inline constexpr std::array<const char*, 2> origin_attributes{"origin_x_m", "origin_y_m"};
+
 /// Writes version, type, and the cells: one vertex for each of n points.
 void write_grid(hid_t root, std::size_t n, std::array<std::int64_t, 2> version);
 /// Everything of a file of snapshots that does not change with time, and empty lists for what does.

@@ -263,10 +263,34 @@ std::vector<SoilPoint> fill_with_lattice_points(std::span<const SlidePart> slide
   return points;
 }
 
+Vec2 mirrored(Vec2 v) { return {-v.x, v.y}; }
+
+std::vector<SlidePart> mirrored(std::span<const SlidePart> slide) {
+  std::vector<SlidePart> out(slide.begin(), slide.end());
+  for (SlidePart& part : out)
+    std::ranges::transform(part.outline, part.outline.begin(), [](Vec2 v) { return mirrored(v); });
+  return out;
+}
+
+/// Walked the other way, so that the soil stays on the left.
+std::vector<Polyline> mirrored(std::span<const Polyline> lines) {
+  std::vector<Polyline> out(lines.begin(), lines.end());
+  for (Polyline& line : out) {
+    std::ranges::transform(line.vertices, line.vertices.begin(), [](Vec2 v) { return mirrored(v); });
+    std::ranges::reverse(line.vertices);
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<const Polyline> walls, double dx,
-                                  Placement placement) {
+                                  Placement placement, SlidesTo slides_to) {
+  if (slides_to == SlidesTo::left) {
+    std::vector<SoilPoint> points = fill_slide(mirrored(slide), mirrored(walls), dx, placement);
+    for (SoilPoint& p : points) p.x = mirrored(p.x);
+    return points;
+  }
   const Ground ground({walls.begin(), walls.end()});
   if (placement == Placement::cells) return fill_with_cut_cells(slide, ground, dx);
   return fill_with_lattice_points(slide, ground, dx, placement == Placement::nodes);

@@ -22,7 +22,8 @@ constexpr double least_cells = 0.5;
 constexpr double least_distance = 0.2;
 
 /// Fills the outlines with soil particles, row by row from the bottom left of their bounding box, where the lattice
-/// of spacing dx begins.
+/// of spacing dx begins; for a slide that goes to the left from its bottom right, so that mirrored slides are
+/// filled alike.
 /// - Placement::cells: one particle at the centroid of each cell, cut at the outline; pieces smaller than least_cells
 ///   join the piece of their outline with which they share the longest edge. The areas add up to that of the outlines.
 ///   Centroids nearer to a wall line than least_distance are moved away from it.
@@ -31,6 +32,6 @@ constexpr double least_distance = 0.2;
 /// @param walls  as wall_lines() returns them, at least one
 /// @param dx     particle spacing [m], > 0
 std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<const Polyline> walls, double dx,
-                                  Placement placement);
+                                  Placement placement, SlidesTo slides_to = SlidesTo::right);
 
 }  // namespace talus

@@ -8,6 +8,18 @@
 
 namespace talus {
 
+enum class SlidesTo { right, left };
+
+/// How run-outs are measured: along x, the way the slide goes.
+struct RunOutAxis {
+  double from = 0.0;  ///< x where they begin [m]
+  SlidesTo to = SlidesTo::right;
+
+  double distance(double x) const { return to == SlidesTo::right ? x - from : from - x; }
+  double x(double distance) const { return to == SlidesTo::right ? from + distance : from - distance; }
+  bool operator==(const RunOutAxis&) const = default;
+};
+
 /// The rigid ground. An open bed runs from its left end to its right end, with the soil on its left as it is walked: it
 /// may have vertical faces and overhangs. A closed one is a ring that is walked counter-clockwise and holds the soil
 /// inside.
@@ -17,7 +29,8 @@ struct Terrain {
   bool left_wall = true;    ///< a vertical wall stands on the first bed vertex
   bool right_wall = false;  ///< a vertical wall stands on the last bed vertex
   double wall_top = 0.0;    ///< y of the top of the end walls [m]
-  double left_boundary = 0.0;  ///< x from which influence zones are measured [m]
+  RunOutAxis run_out;
+  Vec2 origin;  ///< what was taken off the coordinates of the case; what is published has it added again [m]
   bool operator==(const Terrain&) const = default;
 };
 

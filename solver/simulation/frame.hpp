@@ -14,6 +14,7 @@ namespace talus {
 struct Frame {
   double time = 0.0;                          ///< [s]
   std::int64_t step = 0;                      ///< steps made
+  Vec2 origin;                                ///< Terrain::origin, to be added to positions [m]
   std::size_t n_soil = 0;                     ///< how many of the particles are soil
   std::vector<Vec2> position;                 ///< [m]
   std::vector<Vec2> displacement;             ///< since the start [m]

@@ -20,20 +20,22 @@ std::vector<std::uint32_t> by_id(const Soil& soil) {
   return place;
 }
 
-/// Largest x beyond which at most `share` of the mass lies.
-double mass_front(const Soil& soil, double share) {
+/// Largest run-out beyond which at most `share` of the mass lies.
+double mass_front(const Soil& soil, const RunOutAxis& axis, double share) {
+  std::vector<double> x;
+  for (std::size_t i = 0; i < soil.size(); ++i) x.push_back(axis.distance(soil.x[i]));
   std::vector<std::uint32_t> order(soil.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(),
-            [&](auto a, auto b) { return soil.x[a] != soil.x[b] ? soil.x[a] > soil.x[b] : soil.id[a] < soil.id[b]; });
+            [&](auto a, auto b) { return x[a] != x[b] ? x[a] > x[b] : soil.id[a] < soil.id[b]; });
   const double total =
       std::accumulate(order.begin(), order.end(), 0.0, [&](double s, auto i) { return s + soil.m[i]; });
   double beyond = 0.0;
   for (const auto i : order) {
     beyond += soil.m[i];
-    if (beyond > share * total) return soil.x[i];
+    if (beyond > share * total) return x[i];
   }
-  return soil.x[order.back()];
+  return x[order.back()];
 }
 
 /// Root of i in a union-find forest, halving the path on the way.
@@ -42,8 +44,8 @@ std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
   return i;
 }
 
-/// Farthest x of the heaviest body whose particles are linked by gaps of at most `gap`.
-double connected_front(const Soil& soil, double gap) {
+/// Farthest run-out of the heaviest body whose particles are linked by gaps of at most `gap`.
+double connected_front(const Soil& soil, const RunOutAxis& axis, double gap) {
   CellList cells;
   cells.build(soil.x, soil.y, gap);
   const auto order = cells.order();
@@ -62,14 +64,18 @@ double connected_front(const Soil& soil, double gap) {
   for (const std::uint32_t i : by_id(soil)) {
     const std::uint32_t root = find_root(parent, i);
     mass[root] += soil.m[i];
-    front[root] = std::max(front[root], soil.x[i]);
+    front[root] = std::max(front[root], axis.distance(soil.x[i]));
   }
   return front[static_cast<std::size_t>(std::max_element(mass.begin(), mass.end()) - mass.begin())];
 }
 
 }  // namespace
 
-double farthest(const Soil& soil) { return *std::max_element(soil.x.begin(), soil.x.end()); }
+double farthest(const Soil& soil, const RunOutAxis& axis) {
+  double most = axis.distance(soil.x.front());
+  for (const double x : soil.x) most = std::max(most, axis.distance(x));
+  return most;
+}
 
 double total_mass(const Soil& soil) {
   double mass = 0.0;
@@ -101,9 +107,9 @@ double max_speed(const Soil& soil) {
   return std::sqrt(v2);
 }
 
-Measures measure_fronts(const Soil& soil, double left, double dx) {
-  return {farthest(soil) - left, connected_front(soil, 1.5 * dx) - left, mass_front(soil, 0.01) - left,
-          mass_front(soil, 0.001) - left, centre_of_mass(soil).x - left};
+Measures measure_fronts(const Soil& soil, const RunOutAxis& axis, double dx) {
+  return {farthest(soil, axis), connected_front(soil, axis, 1.5 * dx), mass_front(soil, axis, 0.01),
+          mass_front(soil, axis, 0.001), axis.distance(centre_of_mass(soil).x)};
 }
 
 std::string digest(const Soil& soil) {

@@ -4,19 +4,20 @@
 #include <span>
 #include <string>
 
+#include "particles/geometry_input.hpp"
 #include "particles/particles.hpp"
 #include "simulation/run_result.hpp"
 
 namespace talus {
 
-/// Fronts and centre of mass, from the left boundary at x = left [m]; dx is the particle spacing [m].
-/// Soil must not be empty.
-Measures measure_fronts(const Soil& soil, double left, double dx);
+/// Fronts and centre of mass as run-outs; dx is the particle spacing [m]. Soil must not be empty.
+Measures measure_fronts(const Soil& soil, const RunOutAxis& axis, double dx);
 
-/// Farthest x of any soil particle [m].
-double farthest(const Soil& soil);
+/// Run-out of the farthest soil particle [m].
+double farthest(const Soil& soil, const RunOutAxis& axis = {});
+/// sum m [kg/m].
+double total_mass(const Soil& soil);
 /// sum m x / sum m [m].
-double total_mass(const Soil& soil);  ///< [kg/m]
 Vec2 centre_of_mass(const Soil& soil);
 /// sum m v^2 / 2 [J/m].
 double kinetic_energy(const Soil& soil);

@@ -18,6 +18,7 @@ Frame Simulation::frame() const {
   Frame f;
   f.time = time_;
   f.step = steps_;
+  f.origin = model_.terrain.origin;
   f.n_soil = soil_.size();
   const std::size_t n = soil_.size() + walls_.size();
   for (auto* array : {&f.position, &f.displacement, &f.velocity}) array->resize(n);
@@ -47,8 +48,8 @@ Frame Simulation::frame() const {
 }
 
 HistoryRow Simulation::history_row() const {
-  const double left = model_.terrain.left_boundary;
-  return {time_,      steps_,  farthest(soil_) - left, centre_of_mass(soil_).x - left, kinetic_energy(soil_),
+  const RunOutAxis& axis = model_.terrain.run_out;
+  return {time_,      steps_,  farthest(soil_, axis), axis.distance(centre_of_mass(soil_).x), kinetic_energy(soil_),
           max_speed_, energy()};
 }
 
@@ -123,7 +124,7 @@ RunFacts Simulation::facts() const {
 
 RunResult Simulation::result() const {
   RunResult r;
-  r.measures = measure_fronts(soil_, model_.terrain.left_boundary, model_.dx);
+  r.measures = measure_fronts(soil_, model_.terrain.run_out, model_.dx);
   r.ending = time_ >= model_.time.end ? Ending::end_time : rests() ? Ending::at_rest : Ending::interrupted;
   r.soil = static_cast<std::int64_t>(soil_.size());
   r.wall = static_cast<std::int64_t>(walls_.size());

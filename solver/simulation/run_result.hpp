@@ -58,7 +58,7 @@ struct RunResult {
 struct HistoryRow {
   double time = 0.0;  ///< [s]
   std::int64_t step = 0;
-  double front = 0.0;             ///< farthest soil particle from the left boundary [m]
+  double front = 0.0;             ///< run-out of the farthest soil particle [m]
   double centre_of_mass_x = 0.0;  ///< [m]
   double kinetic_energy = 0.0;    ///< of all soil, also that which has left [J/m]
   double max_speed = 0.0;         ///< [m/s]

@@ -101,7 +101,7 @@ void Simulation::report_divergence() const {
                            norm2(soil_.velocity(i)) < fastest2;
     if (!plausible) first = std::min(first, soil_.id[i]);
   }
-  const Vec2 start = starts_[first];
+  const Vec2 start = starts_[first] + model_.terrain.origin;
   throw DivergedError("the run diverged at step " + std::to_string(steps_) + ", time " + std::to_string(time_) +
                           " s: particle " + std::to_string(first) + ", which started at (" + std::to_string(start.x) +
                           ", " + std::to_string(start.y) +

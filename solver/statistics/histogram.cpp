@@ -93,18 +93,20 @@ Interval wilson(std::int64_t k, std::int64_t n) {
   return {k == 0 ? 0.0 : std::max(0.0, centre - half), k == n ? 1.0 : std::min(1.0, centre + half)};
 }
 
-std::vector<Exceedance> exceedance(std::span<const double> sorted, std::span<const double> x, std::int64_t failed) {
+std::vector<Exceedance> exceedance(std::span<const double> sorted, std::span<const double> x, std::int64_t failed,
+                                   std::span<const double> censored) {
   std::vector<Exceedance> curve;
   const auto n = static_cast<std::int64_t>(sorted.size()) + failed;
   if (n == 0) return curve;
   for (double at : x) {
-    const std::int64_t k = sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), at);
+    const std::int64_t seen = sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), at);
+    const std::int64_t k = seen + (std::upper_bound(censored.begin(), censored.end(), at) - censored.begin());
     curve.push_back({.x = at,
                      .k = k,
                      .n = n,
                      .p = static_cast<double>(k) / static_cast<double>(n),
                      .p_if_failed_all_exceed = static_cast<double>(k + failed) / static_cast<double>(n),
-                     .lo = *wilson(k, n).lo,
+                     .lo = *wilson(seen, n).lo,
                      .hi = *wilson(k + failed, n).hi});
   }
   return curve;

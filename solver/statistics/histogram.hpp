@@ -42,15 +42,18 @@ Interval wilson(std::int64_t k, std::int64_t n);
 /// have run, the bounds let all of them, or none, exceed.
 struct Exceedance {
   double x = 0.0;
-  std::int64_t k = 0;                   ///< realizations seen to exceed x (strictly)
+  std::int64_t k = 0;                   ///< realizations that exceed x (strictly), and censored ones
   std::int64_t n = 0;                   ///< realizations made, failed ones included
-  double p = 0.0;                       ///< k / n: failed ones count as not exceeding
+  double p = 0.0;                       ///< k / n: failed ones count as not exceeding, censored ones as exceeding
   double p_if_failed_all_exceed = 0.0;  ///< (k + failed) / n
-  double lo = 0.0;                      ///< Wilson's lower bound for k of n
+  double lo = 0.0;                      ///< Wilson's lower bound for those of n seen to exceed x
   double hi = 0.0;                      ///< Wilson's upper bound for k + failed of n
 };
 
 /// The exceedance curve of a sorted sample at the points `x`; empty where nothing was made.
-std::vector<Exceedance> exceedance(std::span<const double> sorted, std::span<const double> x, std::int64_t failed);
+/// @param censored  those values of the sample, sorted, of which only is known that the true ones are no less: they
+///                  count as exceeding every x, the lower bound only where they are seen to
+std::vector<Exceedance> exceedance(std::span<const double> sorted, std::span<const double> x, std::int64_t failed,
+                                   std::span<const double> censored = {});
 
 }  // namespace talus

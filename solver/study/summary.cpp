@@ -30,13 +30,17 @@ Json moments_json(const SampleMoments& m) {
           {"max", json_of(m.max)}};
 }
 
-Json quantiles_json(const std::vector<double>& sorted, std::int64_t failed) {
+/// @param known_below  from here on a value is a lower bound; unset: none is
+Json quantiles_json(const std::vector<double>& sorted, std::int64_t failed, std::optional<double> known_below) {
   Json all = Json::array();
   if (sorted.empty()) return all;
   for (double p : probabilities) {
-    const Quantile q = quantile(sorted, p, failed);
+    Quantile q = quantile(sorted, p, failed);
+    const auto censored = [&](double value) { return known_below && value >= *known_below; };
+    if (q.ci95.hi && censored(*q.ci95.hi)) q.ci95.hi.reset();
     all.push_back({{"p", q.p},
                    {"value", q.value},
+                   {"at_least", censored(q.value)},
                    {"ci95", json_of(q.ci95)},
                    {"if_failed_all_below", json_of(q.if_failed_below)},
                    {"if_failed_all_above", json_of(q.if_failed_above)}});
@@ -55,12 +59,12 @@ Json histogram_json(const std::vector<double>& sorted, const std::vector<double>
           {"edges_given", !given.empty()}};
 }
 
-Json exceedance_json(const std::vector<double>& sorted, std::int64_t failed) {
+Json exceedance_json(const std::vector<double>& sorted, std::int64_t failed, const std::vector<double>& censored) {
   Json all = Json::array();
   if (sorted.empty()) return all;
   const double range = sorted.back() - sorted.front();
   const auto points = round_grid(sorted.front(), sorted.back(), range > 0.0 ? range / exceedance_points : 0.1);
-  for (const Exceedance& e : exceedance(sorted, points, failed))
+  for (const Exceedance& e : exceedance(sorted, points, failed, censored))
     all.push_back({{"x", e.x},
                    {"k", e.k},
                    {"n", e.n},
@@ -85,6 +89,12 @@ Json notes_json(const Plan& plan) {
        "k of n realizations have a value > x; n includes the failed ones, p counts them as not exceeding; lo is "
        "Wilson's 95 % lower bound "
        "with no failed one exceeding, hi the upper bound with all of them exceeding"},
+      {"censored",
+       "runs whose soil left the terrain through an open end: their run-out of the farthest particle is a lower bound; "
+       "from: the least of them. The mean and quantiles from there on are lower bounds (at_least), and exceedance "
+       "counts "
+       "such runs as beyond every x, lo only as far as they were seen; the other measures take soil that left where it "
+       "left"},
       {"noise_floor",
        "realization 0 and its replicates with tan(phi) scaled by 1 + 1e-6 k; a stdev near its noise_floor_stdev is "
        "numerics"}};
@@ -103,13 +113,19 @@ Json notes_json(const Plan& plan) {
 /// One measure: its statistics, and how much of its spread is the numerics' own.
 /// @param edges  of the histogram; empty: chosen from the data
 Json quantity_json(const MeasureSample& sample, const std::vector<double>& sorted, const std::vector<double>& edges) {
-  const SampleMoments m = moments(sample.values);
+  SampleMoments m = moments(sample.values);
   const SampleMoments noise = moments(sample.noise);
+  std::vector<double> censored = sample.censored;
+  std::sort(censored.begin(), censored.end());
+  const std::optional<double> known_below = censored.empty() ? std::nullopt : std::optional(censored.front());
+  if (known_below) m.mean_ci95.reset();
   const std::optional<Ratio> ratio = stdev_ratio(m, noise);
   Json quantity = moments_json(m);
-  quantity["quantiles"] = quantiles_json(sorted, sample.failed);
+  quantity["mean_at_least"] = known_below.has_value();
+  quantity["censored"] = known_below ? Json{{"runs", censored.size()}, {"from", *known_below}} : Json();
+  quantity["quantiles"] = quantiles_json(sorted, sample.failed, known_below);
   quantity["histogram"] = histogram_json(sorted, edges);
-  quantity["exceedance"] = exceedance_json(sorted, sample.failed);
+  quantity["exceedance"] = exceedance_json(sorted, sample.failed, censored);
   quantity["noise_floor_stdev"] = json_of(noise.stdev);
   quantity["noise_floor_stdev_ci95"] = json_of(noise.stdev_ci95);
   quantity["stdev_over_noise_floor"] = ratio ? Json(ratio->value) : Json();
@@ -145,6 +161,7 @@ bool StudySummary::add(const Record& record) {
     const double value = record.measures.*measure_table[k].member;
     if (!std::isnan(value)) samples_[k].push_back(value);
   }
+  if (record.left_domain > 0.0) censored_.push_back(zone);
   phi_.push_back(record.mean_phi_deg);
   wall_clock_ += record.wall_clock;
   steps_ += record.steps;
@@ -162,6 +179,7 @@ MeasureSample StudySummary::sample(const Measure& measure) const {
   if (origin_ && !replicates_.empty()) add(*origin_);
   std::for_each(replicates_.begin(), replicates_.end(), add);
   return {.values = samples_[static_cast<std::size_t>(&measure - measure_table.data())],
+          .censored = &measure == measure_table.data() ? censored_ : std::vector<double>{},
           .noise = std::move(noise),
           .failed = failed(),
           .quality = quality_.counts(),
@@ -241,8 +259,8 @@ Json distribution(const Plan& plan, const Measure& measure, const MeasureSample&
   if (bins.count > 0) quantity["histogram"]["edges_given"] = false;
   Json answer = {{"quantity", measure.key}, {"planned", plan.study.realizations}, {"done", values.size()},
                  {"failed", sample.failed}, {"quality", sample.quality.json()},   {"complete", sample.complete}};
-  for (const char* key :
-       {"n", "mean", "mean_ci95", "stdev", "min", "max", "noise_floor_stdev", "stdev_over_noise_floor", "histogram"})
+  for (const char* key : {"n", "mean", "mean_at_least", "mean_ci95", "censored", "stdev", "min", "max",
+                          "noise_floor_stdev", "stdev_over_noise_floor", "histogram"})
     answer[key] = std::move(quantity[key]);
   return answer;
 }

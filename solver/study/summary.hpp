@@ -19,7 +19,9 @@ namespace talus {
 /// How the values of one measure are distributed.
 struct MeasureSample {
   std::vector<double> values;  ///< of the realizations done, in order of index
-  std::vector<double> noise;   ///< of realization 0 and its replicates, in order; empty without replicates
+  /// Those of `values`, in any order, that are lower bounds: soil of their runs left the terrain through an open end.
+  std::vector<double> censored = {};
+  std::vector<double> noise = {};  ///< of realization 0 and its replicates, in order; empty without replicates
   std::int64_t failed = 0;
   QualityCounts quality;
   bool complete = false;  ///< every realization of the study has ended
@@ -57,7 +59,8 @@ class StudySummary {
   Plan plan_;
   StopRule stop_;
   std::array<std::vector<double>, measure_table.size()> samples_;  ///< of the done ones, in order of index
-  std::vector<double> phi_;                                        ///< mean friction angles [deg]
+  std::vector<double> censored_;  ///< run-outs of the done ones whose soil left the terrain
+  std::vector<double> phi_;       ///< mean friction angles [deg]
   QualitySummary quality_;
   Json failures_ = Json::array();
   Json missing_ = Json::array();  ///< ranges of indices without a record, up to next_

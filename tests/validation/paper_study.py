@@ -37,7 +37,7 @@ def settings(case, truncation, spacing=SPACING):
     """Run until the slide rests: the rule ends a run some 0.2 s after the front has stopped."""
     stdev, length = TABLE_4[case]
     floor = {"study.noise_floor_replicates": 0} if spacing == FINE else {}  # noise_floor.py has it
-    return {**floor, "particle_spacing_m": spacing, "random_field.log_stdev": stdev, "random_field.correlation_length_m": length,
+    return {**floor, "particle_placement": "whole_cells", "particle_spacing_m": spacing, "random_field.log_stdev": stdev, "random_field.correlation_length_m": length,
             "time.end_s": 15, "time.stop_at_rest": True, **TRUNCATIONS[truncation]}
 
 

@@ -12,7 +12,7 @@ std::string as_override(std::string_view name) {
 }
 
 TEST(CaseAliases, GiveTheSameCaseAndAWarning) {
-  ASSERT_EQ(std::size(case_aliases), 2u);
+  ASSERT_EQ(std::size(case_aliases), 3u);
   for (const auto& [alias, name] : case_aliases) {
     const LoadedCase old = test::load(test::minimal(), {as_override(alias)});
     const LoadedCase present = test::load(test::minimal(), {as_override(name)});

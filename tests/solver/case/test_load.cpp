@@ -165,7 +165,7 @@ TEST(LoadCase, MeanAndCovBecomeLogParameters) {
 
 TEST(LoadCase, DerivedDefaultsOfTheTerrain) {
   const Terrain t = test::load(with("/terrain/bed_m", {{-1, 5.5}, {10, 0}, {40, 0}})).value.model.terrain;
-  EXPECT_EQ(t.left_boundary, -1.0);
+  EXPECT_EQ(t.run_out.from, -1.0);
   EXPECT_EQ(t.wall_top, 8.0 + 5 * 0.5) << "over the slide";
   const Terrain high = test::load(with("/terrain/bed_m", {{-9, 20}, {0, 5}, {10, 0}, {40, 0}})).value.model.terrain;
   EXPECT_EQ(high.wall_top, 20.0 + 5 * 0.5) << "over the bed where a wall stands";
@@ -176,7 +176,7 @@ TEST(LoadCase, ClosedBedsRunCounterClockwiseWithoutRepetition) {
   document["slide"]["outlines"][0]["outline_m"] = {{0, 0}, {5, 0}, {5, 5}, {0, 5}, {0, 0}};
   const Model m = test::load(document).value.model;
   EXPECT_EQ(m.terrain.bed, (std::vector<Vec2>{{20, 0}, {20, 9}, {0, 9}, {0, 0}}));
-  EXPECT_EQ(m.terrain.left_boundary, 0.0);
+  EXPECT_EQ(m.terrain.run_out.from, 0.0);
   EXPECT_EQ(m.slide[0].outline.size(), 4u);
 }
 
@@ -239,6 +239,50 @@ TEST(CaseHash, IsFnv1a) {
   expected << std::hex << std::setw(16) << std::setfill('0') << step(step(14695981039346656037ULL, '{'), '}');
   EXPECT_EQ(case_hash(Json::object()), expected.str());
   EXPECT_EQ(case_hash({{"a", 1}, {"b", 2}}), case_hash({{"b", 2}, {"a", 1}}));
+}
+
+/// A case whose slide lies on a bed that is given.
+Json on_bed(const char* bed, const char* outline, const Json& more = Json::object()) {
+  Json document = minimal();
+  document["terrain"] = {{"bed_m", Json::parse(bed)}};
+  document["terrain"].update(more);
+  document["slide"] = {{"outlines", {{{"outline_m", Json::parse(outline)}}}}};
+  document["particle_spacing_m"] = 0.25;
+  return document;
+}
+
+constexpr const char* falls_left = "[[-60,0],[-14,0],[0,8]]";
+constexpr const char* on_the_slope = "[[-14,0],[0,8],[0,10],[-14,2]]";
+
+TEST(LoadCase, TheSlideGoesWhereTheBedFalls) {
+  const Terrain left = test::load(on_bed(falls_left, on_the_slope)).value.model.terrain;
+  EXPECT_EQ(left.run_out, (RunOutAxis{0.0, SlidesTo::left}));
+  EXPECT_FALSE(left.left_wall);
+  EXPECT_TRUE(left.right_wall);
+  const Terrain right =
+      test::load(on_bed("[[-1,8],[14,0],[60,0]]", "[[0,8],[14,0],[14,2],[0,10]]")).value.model.terrain;
+  EXPECT_EQ(right.run_out, (RunOutAxis{-1.0, SlidesTo::right}));
+  EXPECT_TRUE(right.left_wall);
+  EXPECT_FALSE(right.right_wall);
+}
+
+TEST(LoadCase, OnLevelGroundTheSlideGoesAwayFromTheWall) {
+  const char* bed = "[[0,1],[20,1]]";
+  const auto to = [&](const char* outline, const Json& ends) {
+    return test::load(on_bed(bed, outline, ends)).value.model.terrain.run_out.to;
+  };
+  const char* at_the_right = "[[15,1],[20,1],[20,4],[15,4]]";
+  EXPECT_EQ(to(at_the_right, {{"right_end", "wall"}}), SlidesTo::left);
+  EXPECT_EQ(to(at_the_right, {{"right_end", "open"}}), SlidesTo::right);
+  EXPECT_EQ(to("[[0,1],[20,1],[20,4],[0,4]]", {{"right_end", "wall"}}), SlidesTo::right);
+  EXPECT_EQ(to("[[5,1],[9,1],[9,4],[5,4]]", {{"right_end", "wall"}}), SlidesTo::right);
+}
+
+TEST(LoadCase, TheDirectionAndWhereItIsMeasuredFromCanBeGiven) {
+  const Terrain t = test::load(on_bed(falls_left, on_the_slope, {{"slides_to", "right"}, {"measured_from_m", -14}}))
+                        .value.model.terrain;
+  EXPECT_EQ(t.run_out, (RunOutAxis{-14.0, SlidesTo::right}));
+  EXPECT_EQ(faults_of(on_bed(falls_left, on_the_slope, {{"slides_to", "up"}})).size(), 1u);
 }
 
 }  // namespace

@@ -70,9 +70,9 @@ INSTANTIATE_TEST_SUITE_P(, CsvDialects, ::testing::ValuesIn(dialects), [](const 
 TEST(ReadCsv, HasOneFaultForAllLinesOfAKind) {
   EXPECT_EQ(complaint("x,y\n0,1\n\n0,a\n"), "f.csv:4: \"a\" is not a number");
   EXPECT_EQ(complaint("0,1\n1,2,3\n4\n5,6\n"), "f.csv:2: has 3 columns, expected 2 (and 1 more line)");
-  EXPECT_EQ(complaint("0,1\na,2\n1,b\nc,3\n4,1e7\n"),
+  EXPECT_EQ(complaint("0,1\na,2\n1,b\nc,3\n4,1e9\n"),
             "f.csv:2: \"a\" is not a number (and 2 more lines)\n"
-            "f.csv:5: 1e7 is out of range; unit m, allowed >= -1e+06 and <= 1e+06");
+            "f.csv:5: 1e9 is out of range; unit m, allowed >= -1e+08 and <= 1e+08");
   EXPECT_EQ(complaint("0,1\ninf,2\n"), "f.csv:2: \"inf\" is not a number");
   EXPECT_EQ(complaint("0,1\n2,3\nx,y\n"), "f.csv:3: \"x\" is not a number") << "a header comes before the numbers";
   EXPECT_EQ(complaint("0,a\n1,2\n3,4\n"), "f.csv:1: \"a\" is not a number") << "a row with one number is no header";

@@ -195,6 +195,28 @@ class Run(Directory):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(load(self.dir / "b/result.json")["digest"], first["digest"])
 
+    def test_a_case_on_a_national_grid_has_the_same_digest_and_its_own_coordinates(self):
+        by = (2_683_000, 1_247_000)
+        near = load(SLOPE)
+        move = lambda points: [[x + by[0], y + by[1]] for x, y in points]
+        outlines = [{"outline_m": move(near["slide"]["outlines"][0]["outline_m"])}]
+        terrain = near["terrain"] | {"bed_m": move(near["terrain"]["bed_m"])}
+        positions, results = [], []
+        for name, changes in (("near", {}), ("far", {"terrain": terrain, "slide": {"outlines": outlines}})):
+            path = self.case(**changes)
+            out = self.dir / name
+            self.assertEqual(talus("run", path, "--out", out, "--seed", 1).returncode, 0)
+            self.assertEqual(talus("profile", out, "--out", self.dir / "profile.json").returncode, 0)
+            self.assertEqual(talus("field", path, "--out", self.dir / "field.csv").returncode, 0)
+            profile, field = load(self.dir / "profile.json"), table(self.dir / "field.csv")
+            positions.append([*zip(profile["x_m"], profile["y_m"]), *((float(f["x_m"]), float(f["y_m"])) for f in field)])
+            results.append(load(out / "result.json"))
+        self.assertEqual(results[0]["digest"], results[1]["digest"])
+        self.assertEqual(results[0]["influence_zone_m"], results[1]["influence_zone_m"])
+        for here, there in zip(*positions, strict=True):
+            for axis in (0, 1):
+                self.assertAlmostEqual(here[axis] + by[axis], there[axis], delta=2e-9)
+
     def test_json_is_one_value_on_stdout(self):
         done = talus("run", SLOPE, *COARSE, "--out", self.dir / "a", "--json", "--figures")
         self.assertEqual(json.loads(done.stdout), load(self.dir / "a/result.json"))

@@ -16,7 +16,7 @@ using test::block;
 using test::contains;
 using Rows = std::vector<std::vector<double>>;
 
-const Terrain slope{.bed = {{-5, 20}, {15, 0}, {60, 0}}, .wall_top = 25, .left_boundary = -5.0};
+const Terrain slope{.bed = {{-5, 20}, {15, 0}, {60, 0}}, .wall_top = 25, .run_out = {-5.0}};
 const std::vector<SlidePart> slide{{.outline = {{-5, 20}, {0, 15}, {0, 22}, {-5, 24}}}};
 
 StudyFiles example(int made, bool one_failed, bool with_floor = true) {

@@ -53,5 +53,11 @@ TEST(Ground, HatchingLiesBehindTheLineAtEvenSteps) {
   for (const Stroke& s : strokes) EXPECT_NEAR(norm(s.along), 0.5, 1e-12);
 }
 
+TEST(Ground, AxesNameWhatWasTakenOffTheCoordinates) {
+  EXPECT_EQ(axis_label("x", 0.0), "x (m)");
+  EXPECT_EQ(axis_label("x", 2'683'000.0), "x - 2683000 (m)");
+  EXPECT_EQ(axis_label("y", -55.25), "y + 55.25 (m)");
+}
+
 }  // namespace
 }  // namespace talus::figures

@@ -17,7 +17,7 @@ using test::block;
 using test::contains;
 using test::three_particles;
 
-const Terrain slope{.bed = {{0, 10}, {10, 0}, {40, 0}}, .wall_top = 12, .left_boundary = 1.0};
+const Terrain slope{.bed = {{0, 10}, {10, 0}, {40, 0}}, .wall_top = 12, .run_out = {1.0}};
 
 void plot_one(const Frame& frame, const Terrain& terrain, double dx, Colour colour, const std::filesystem::path& path,
               const Stamps& stamps) {

@@ -73,6 +73,11 @@ void write_uninterrupted(const fs::path& path, std::size_t steps) {
   writer.close();
 }
 
+Frame read_after_writing(const std::filesystem::path& path, const Frame& frame) {
+  SnapshotWriter(path, frame).close();
+  return read_frame(path, 0);
+}
+
 TEST(Snapshots, ComeBack) {
   const TemporaryDirectory dir;
   write_uninterrupted(dir / "s.vtkhdf", 5);
@@ -80,6 +85,16 @@ TEST(Snapshots, ComeBack) {
   for (const std::size_t k : {3, 0, 4}) expect_equal(read_frame(dir / "s.vtkhdf", k), known_frame(n, n_soil, k));
   EXPECT_NE(io_error([&] { read_frame(dir / "s.vtkhdf", 5); }).find("has 5 steps"), std::string::npos);
   EXPECT_EQ(test::names_in(dir.path()), (std::vector<std::string>{"s.vtkhdf", "s.xdmf"}));
+}
+
+TEST(Snapshots, OfACaseFarFromZeroKeepItsOrigin) {
+  const TemporaryDirectory dir;
+  Frame far = known_frame(4, 2, 0);
+  EXPECT_EQ(read_after_writing(dir / "near.vtkhdf", far).origin, Vec2{});
+  far.origin = {2'683'000, -1'247'000};
+  const Frame found = read_after_writing(dir / "far.vtkhdf", far);
+  EXPECT_EQ(found.origin, far.origin);
+  expect_equal(found, far);
 }
 
 TEST(Snapshots, OfMoreParticlesThanAChunkHolds) {

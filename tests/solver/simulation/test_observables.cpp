@@ -26,7 +26,7 @@ Soil body_and_stray(double stray_mass) {
 }
 
 TEST(Fronts, FarthestSeesTheStrayParticleTheOthersDoNot) {
-  const Measures m = measure_fronts(body_and_stray(0.001), 1.0, 1.0);
+  const Measures m = measure_fronts(body_and_stray(0.001), {1.0}, 1.0);
   EXPECT_DOUBLE_EQ(m.influence_zone, 20.0 - 1.0);
   EXPECT_DOUBLE_EQ(m.front_connected, 5.0 - 1.0);
   EXPECT_DOUBLE_EQ(m.front_mass_99, 5.0 - 1.0);
@@ -35,7 +35,7 @@ TEST(Fronts, FarthestSeesTheStrayParticleTheOthersDoNot) {
 }
 
 TEST(Fronts, AHeavyStrayMovesTheMassFronts) {
-  const Measures m = measure_fronts(body_and_stray(0.05), 0.0, 1.0);  // 0.4 % of the mass
+  const Measures m = measure_fronts(body_and_stray(0.05), {}, 1.0);  // 0.4 % of the mass
   EXPECT_DOUBLE_EQ(m.front_mass_99, 5.0);
   EXPECT_DOUBLE_EQ(m.front_mass_999, 20.0);
 }
@@ -43,14 +43,24 @@ TEST(Fronts, AHeavyStrayMovesTheMassFronts) {
 TEST(Fronts, LinksReachOneAndAHalfSpacings) {
   Soil s = body_and_stray(0.1);
   s.x.back() = 6.49;
-  EXPECT_DOUBLE_EQ(measure_fronts(s, 0.0, 1.0).front_connected, 6.49);
+  EXPECT_DOUBLE_EQ(measure_fronts(s, {}, 1.0).front_connected, 6.49);
   s.x.back() = 6.51;
-  EXPECT_DOUBLE_EQ(measure_fronts(s, 0.0, 1.0).front_connected, 5.0);
+  EXPECT_DOUBLE_EQ(measure_fronts(s, {}, 1.0).front_connected, 5.0);
 }
 
 TEST(Fronts, TheLargestBodyIsTheHeaviest) {
   Soil s = body_and_stray(13.0);
-  EXPECT_DOUBLE_EQ(measure_fronts(s, 0.0, 1.0).front_connected, 20.0);
+  EXPECT_DOUBLE_EQ(measure_fronts(s, {}, 1.0).front_connected, 20.0);
+}
+
+TEST(Fronts, OfASlideToTheLeftAreThoseOfItsMirrorImage) {
+  const Soil right = body_and_stray(0.05);
+  Soil left = right;
+  for (double& x : left.x) x = -x;
+  const Measures a = measure_fronts(right, {1.5, SlidesTo::right}, 1.0);
+  const Measures b = measure_fronts(left, {-1.5, SlidesTo::left}, 1.0);
+  for (const Measure& m : measure_table) EXPECT_DOUBLE_EQ(a.*m.member, b.*m.member) << m.key;
+  EXPECT_DOUBLE_EQ(b.influence_zone, 20.0 - 1.5);
 }
 
 TEST(Energy, MomentumAndSpeeds) {

@@ -118,3 +118,13 @@ TEST(EqualEdges, OddSamples) {
   const Histogram h = histogram(std::vector{34.0, 34.0}, equal_edges(std::vector{34.0, 34.0}, 2));
   EXPECT_EQ(h.counts[0] + h.counts[1], 2);
 }
+
+TEST(Exceedance, CensoredValuesCountAsBeyondEveryX) {
+  const std::vector<double> sorted{28, 30, 31, 31}, censored{31, 31}, x{29, 31, 50};
+  const std::vector<Exceedance> curve = exceedance(sorted, x, 1, censored);
+  EXPECT_EQ(curve[0].k, 3);  // seen to exceed 29
+  EXPECT_EQ(curve[1].k, 2);
+  EXPECT_DOUBLE_EQ(curve[2].p, 2.0 / 5.0);
+  EXPECT_EQ(curve[2].lo, *wilson(0, 5).lo);
+  EXPECT_EQ(curve[2].hi, *wilson(2 + 1, 5).hi);
+}

@@ -137,3 +137,25 @@ TEST(Summary, SaysWhatALatinHypercubeMeansForIntervals) {
   EXPECT_NE(study["notes"]["sampling"].get<std::string>().find("conservative"), std::string::npos);
   EXPECT_EQ(study["provenance"]["sampling"], "latin_hypercube");
 }
+
+TEST(Summary, RunOutsOfSoilThatLeftTheTerrainAreLowerBounds) {
+  std::vector<Record> runs;
+  for (std::int64_t k = 0; k < 10; ++k) {
+    Record run{.index = k, .done = true};
+    run.measures.influence_zone = k < 6 ? 20.0 + static_cast<double>(k) : 31.0;
+    run.left_domain = k < 6 ? 0.0 : 3.0;
+    runs.push_back(run);
+  }
+  const Plan plan{.title = "cut off", .study = {.realizations = 10}};
+  const Json q = summary_of(plan, runs, {}).json()["quantities"]["influence_zone_m"];
+  EXPECT_EQ(q["censored"], (Json{{"runs", 4}, {"from", 31.0}}));
+  EXPECT_EQ(q["mean_at_least"], true);
+  EXPECT_TRUE(q["mean_ci95"].is_null());
+  for (const Json& quantile : q["quantiles"]) EXPECT_EQ(quantile["at_least"], quantile["p"] >= 0.75) << quantile;
+  EXPECT_EQ(q["exceedance"].back()["p"], 0.4) << "at the bed's end and beyond";
+  for (Record& run : runs) run.left_domain = 0.0;
+  const Json known = summary_of(plan, runs, {}).json()["quantities"]["influence_zone_m"];
+  EXPECT_EQ(known["mean_at_least"], false);
+  EXPECT_TRUE(known["censored"].is_null());
+  EXPECT_EQ(known["exceedance"].back()["p"], 0.0);
+}
