@@ -132,7 +132,8 @@ void cut_outlines(ObjectReader& in, const Vertices& ground, const Vertices& slip
 SlidesTo downhill(ObjectReader& in, const Terrain& t, const SlideInput& slide, double dx) {
   if (t.closed || t.bed.empty() || slide.parts.empty()) return SlidesTo::right;
   const Box box = bounding_box(slide.parts);
-  const double fall = bed_height(t.bed, box.lo.x) - bed_height(t.bed, box.hi.x);
+  const auto height = [&](double x) { return height_beneath(t.bed, {x, box.hi.y}); };
+  const double fall = height(box.lo.x) - height(box.hi.x);
   if (std::abs(fall) > 0.1 * dx) return fall > 0.0 ? SlidesTo::right : SlidesTo::left;
   const auto stands = [&](const char* key, bool otherwise) {
     const Json* end = in.find(key);

@@ -61,7 +61,7 @@ TEST(Validate, SaysWhatWasMadeOfTheGround) {
   EXPECT_EQ(road["ground"]["left_end"]["kind"], "wall");
   EXPECT_EQ(road["ground"]["right_end"], (nlohmann::json{{"kind", "open"}, {"x_m", 95.0}, {"y_m", 8.1}}));
   EXPECT_EQ(road["slide"]["x_m"], (nlohmann::json{8.0, 35.0}));
-  EXPECT_EQ(road["slide"]["direction"], "right");
+  EXPECT_EQ(road["slide"]["slides_to"], "right");
   EXPECT_NEAR(road["slide"]["thickness_m"].get<double>(), 6.8, 0.3);
   const auto coarse = report("road-slope", " --set particle_spacing_m=3");
   EXPECT_LT(coarse["ground"]["vertices"]["kept"], 23) << "vertices nearer than the spacing are taken out";
