@@ -111,6 +111,7 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
               {"mass_kg_m", {{"filled", d.mass.filled}, {"outline", d.mass.outline}}}};
   const Model& model = loaded.value.model;
   const GroundReport report = report_ground(loaded);
+  out["files"] = loaded.files;
   out["ground"] = to_json(report, model.terrain);
   out["slide"] = slide_json(report, model);
   if (d.captured_variance) out["field"] = {{"terms", d.field_terms}, {"captured_variance", *d.captured_variance}};
@@ -142,6 +143,7 @@ void print_ground(const GroundReport& r, const Model& model) {
 
 void print_text(const LoadedCase& loaded, const Demand& d) {
   std::printf("%s\n", loaded.value.title.c_str());
+  for (const std::string& file : loaded.files) std::printf("file               %s\n", file.c_str());
   print_ground(report_ground(loaded), loaded.value.model);
   std::printf("particles          %zu soil + %zu wall\n", d.soil, d.wall);
   std::printf("mass               %.0f kg/m, %+.2f %% of the outlines'\n", d.mass.filled,

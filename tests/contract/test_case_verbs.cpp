@@ -55,6 +55,9 @@ TEST(Validate, SaysWhatWasMadeOfTheGround) {
         talus("validate --json " + std::string(TALUS_SOURCE_DIR) + "/solver/cases/" + name + ".json" + set).out);
   };
   const auto road = report("road-slope");
+  EXPECT_EQ(road["files"][0],
+            "road-slope-ground.csv: columns \"chainage_m\" and \"elevation_m\", separated by commas, 21 vertices");
+  EXPECT_EQ(road["files"].size(), 2u);
   EXPECT_EQ(road["ground"]["source"], "the bed joined from the surfaces of the slide");
   EXPECT_EQ(road["ground"]["vertices"], (nlohmann::json{{"given", 23}, {"kept", 23}}));
   EXPECT_EQ(road["ground"]["moved_m"], 0.0);

@@ -67,6 +67,17 @@ const Dialect dialects[] = {
 
 INSTANTIATE_TEST_SUITE_P(, CsvDialects, ::testing::ValuesIn(dialects), [](const auto& one) { return one.param.name; });
 
+TEST(ReadCsv, SaysWhatItRead) {
+  const auto form = [](const std::string& csv) {
+    Faults none;
+    return read_csv(csv, "f.csv", none).form;
+  };
+  EXPECT_EQ(form("0,1\n2,3\n"), "columns 1 and 2, separated by commas");
+  EXPECT_EQ(form("id\tElevation (m)\tChainage\n1\t0\t1,5\n2\t3\t4\n"),
+            "columns \"Chainage\" and \"Elevation (m)\", separated by tabs, decimal commas");
+  EXPECT_EQ(form("elevation;p\n0;1\n2;3\n"), "columns \"p\" and \"elevation\", separated by semicolons");
+}
+
 TEST(ReadCsv, HasOneFaultForAllLinesOfAKind) {
   EXPECT_EQ(complaint("x,y\n0,1\n\n0,a\n"), "f.csv:4: \"a\" is not a number");
   EXPECT_EQ(complaint("0,1\n1,2,3\n4\n5,6\n"), "f.csv:2: has 3 columns, expected 2 (and 1 more line)");
