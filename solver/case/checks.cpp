@@ -98,17 +98,12 @@ void warn_of_open_ends(const Model& model, std::vector<Fault>& warnings) {
         {"/terrain/wall_top_m", "is lower than the slide's highest point; soil may spill over the wall and is lost"});
 }
 
-/// Values that are legal but mostly slips: another unit, a spacing far too coarse.
+/// Values that are legal but mostly slips: another unit.
 void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings) {
   const double density = model.materials.front().rho0;
   if (density < 500.0 || density > 5000.0)
     warnings.push_back({"/material/density_kg_m3",
                         to_text(density) + " kg/m3 is unusual for soil, 1000 to 3000 are common; is the unit right?"});
-  const double cells = slide_area(model) / (model.dx * model.dx);
-  if (cells < 100.0)
-    warnings.push_back({"/particle_spacing_m", "leaves about " + rounded(cells) +
-                                                   " soil particles, too few for a meaningful run; a tenth of the flow "
-                                                   "depth is a usual spacing"});
 }
 
 }  // namespace
@@ -144,11 +139,6 @@ std::vector<Fault> find_warnings(const Case& c) {
   const Model& model = c.model;
   warn_of_unlikely_values(model, warnings);
   if (!model.terrain.closed) warn_of_open_ends(model, warnings);
-  const double courant =
-      model.time.fixed_step.value_or(0.0) * sound_speed(model) / (model.numerics.h_over_dx * model.dx);
-  if (courant > 1.0)
-    warnings.push_back({"/time/fixed_step_s", "is large: sound travels " + rounded(courant) +
-                                                  " smoothing lengths in it; expect divergence above 1"});
   if (model.numerics.precision == Precision::full)
     warnings.push_back(
         {"/numerics/precision",

@@ -93,7 +93,8 @@ int terminal_width() {
 
 std::string study_report(const Json& study) {
   const std::string quality = study.contains("quality") ? quality_line(study.at("quality")) : "";
-  return (quality.empty() ? "" : quality + "\n") + summary_table(study) + "\nrun-out distance [m] (influence_zone_m)\n" +
+  return (quality.empty() ? "" : quality + "\n") + summary_table(study) +
+         "\nrun-out distance [m] (influence_zone_m)\n" +
          text_histogram(study.at("quantities").at(measure_table[0].key), 80);
 }
 

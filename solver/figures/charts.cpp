@@ -61,7 +61,7 @@ Axis means_axis(const Rows& rows) {
 }  // namespace
 
 Sheet chart(const StudyFiles& study, std::string_view subtitle, const Canvas& canvas) {
-  return {canvas, {study.title, std::string(subtitle), study.source + "  ·  " + count_text(study)}};
+  return {canvas, {study.title, std::string(subtitle), study.source + "  ·  " + count_text(study), study.quality}};
 }
 
 std::string count_text(const StudyFiles& study) {
