@@ -98,14 +98,6 @@ void warn_of_open_ends(const Model& model, std::vector<Fault>& warnings) {
         {"/terrain/wall_top_m", "is lower than the slide's highest point; soil may spill over the wall and is lost"});
 }
 
-/// Values that are legal but mostly slips: another unit.
-void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings) {
-  const double density = model.materials.front().rho0;
-  if (density < 500.0 || density > 5000.0)
-    warnings.push_back({"/material/density_kg_m3",
-                        to_text(density) + " kg/m3 is unusual for soil, 1000 to 3000 are common; is the unit right?"});
-}
-
 }  // namespace
 
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults) {

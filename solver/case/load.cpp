@@ -10,7 +10,8 @@
 namespace talus {
 namespace {
 
-constexpr Names<Placement> placements[] = {{"cells", Placement::cells}, {"nodes", Placement::nodes}};
+constexpr Names<Placement> placements[] = {
+    {"cells", Placement::cells}, {"whole_cells", Placement::whole_cells}, {"nodes", Placement::nodes}};
 
 }  // namespace
 
@@ -24,8 +25,12 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
                       "thinnest flow / 10 or finer; [Z20] uses 0.1 and 0.2"});
   in.choice(
       "particle_placement", m.placement, placements,
-      {"cells: particles at the centres of square cells; nodes: at lattice nodes, outline edges included, with the "
-       "wall line half a spacing behind the bed.",
+      {"cells: square cells cut at the outlines, a particle of the cut cell's mass at its centroid, so that the mass "
+       "is "
+       "that of the outlines; whole_cells: particles of equal mass at the centres of cells, none nearer than half a "
+       "spacing to the bed; nodes: the same at lattice nodes, outline edges included, with the wall line half a "
+       "spacing "
+       "behind the bed.",
        "nodes as in [Z20] Fig. 3"});
   in.integer("max_particles", m.max_particles, {"", 1.0, 1e8},
              {"Refuse to fill more soil and wall particles than this.", "memory; see talus validate"});

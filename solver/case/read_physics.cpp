@@ -11,6 +11,7 @@ namespace {
 
 constexpr Quantity friction_angle{"deg", 0.0, 90.0, false, true};
 constexpr Quantity duration{"s", 0.0, 1e7, true};
+constexpr double laboratory_gravity = 9.81;  ///< with which laboratories state unit weights [m/s2]
 constexpr std::size_t most_snapshots = 10'000;
 
 constexpr Names<ShearRate> shear_rates[] = {{"consistent", ShearRate::consistent}, {"paper", ShearRate::paper}};
@@ -64,14 +65,24 @@ void read_snapshots(ObjectReader& in, TimeControl& t) {
 
 void read_material(ObjectReader& in, MaterialInput& m) {
   in.string("name", m.name, {1, 100}, {"What the material is called in messages and results."});
-  in.required_number("density_kg_m3", m.rho0, {"kg/m3", 0.0, 1e5, true},
-                     {"Reference density of the soil in place.", "laboratory; [Z20] Eq. 3"});
+  in.number_in_either("density_kg_m3", m.rho0, {"kg/m3", 0.0, 1e5, true},
+                      {"Reference density of the soil in place.", "laboratory; [Z20] Eq. 3",
+                       "none, required unless unit_weight_kN_m3 is given"},
+                      true,
+                      {"unit_weight_kN_m3",
+                       {"kN/m3", 0.0, 981.0, true},
+                       1000.0 / laboratory_gravity,
+                       {"Unit weight of the soil in place, instead of its density: divided by 9.81 m/s2, whatever "
+                        "gravity_m_s2 is.",
+                        "laboratory", "none"}});
   in.required_number("friction_angle_deg", m.friction_angle_deg, friction_angle,
                      {"Friction angle phi of the yield stress c + p tan(phi); the median if the random field has no "
                       "log_mean.",
                       "laboratory; [Z20] Eq. 5"});
   m.phi = radians(m.friction_angle_deg);
-  in.number("cohesion_Pa", m.c, {"Pa", 0.0, 1e9}, {"Cohesion c of the yield stress.", "laboratory; [Z20] Eq. 5"});
+  in.number_in_either("cohesion_Pa", m.c, {"Pa", 0.0, 1e9},
+                      {"Cohesion c of the yield stress.", "laboratory; [Z20] Eq. 5"}, false,
+                      {"cohesion_kPa", {"kPa", 0.0, 1e6}, 1000.0, {"The same in kPa.", "laboratory", "none"}});
   in.number("viscosity_Pa_s", m.eta, {"Pa s", 0.0, 1e9},
             {"Viscosity once the soil has yielded.", "rheometer; [Z20] Eq. 4"});
 }

@@ -129,6 +129,23 @@ void ObjectReader::required_number(std::string_view key, double& value, const Qu
   record(key, value);
 }
 
+void ObjectReader::number_in_either(std::string_view key, double& value, const Quantity& q, const KeyText& text,
+                                    bool required, const OtherUnit& other) {
+  const auto given = read_number(key, q, text, "number", required ? Json(nullptr) : Json(value));
+  const auto converted = read_number(other.key, other.q, other.text);
+  if (required && default_words_.empty()) {
+    one_form({{{key}}, {{other.key}}});
+    if (find(key) == nullptr && find(other.key) == nullptr)
+      fault(key, "is missing (or " + std::string(other.key) + "); " + q.describe());
+    if (find(key) != nullptr && find(other.key) != nullptr)
+      fault(other.key, "is given beside " + std::string(key) + "; give one of the two");
+  } else {
+    exclude(other.key, key);
+  }
+  value = given ? *given : converted ? *converted * other.factor : value;
+  record(key, value);
+}
+
 void ObjectReader::optional_number(std::string_view key, std::optional<double>& value, const Quantity& q,
                                    const KeyText& text) {
   if (const auto read = read_number(key, q, text)) record(key, value.emplace(*read));

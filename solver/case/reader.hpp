@@ -51,6 +51,14 @@ enum class Absent { defaults, fault, skip };  ///< its keys take their defaults 
 template <class E>
 using Names = std::pair<std::string_view, E>;
 
+/// Another key of a number, in another unit.
+struct OtherUnit {
+  std::string_view key;
+  Quantity q;
+  double factor;  ///< times the number under this key is the one under the first
+  KeyText text;
+};
+
 /// Keys that are given together: `required` ones and those that may stand beside them.
 struct Form {
   std::vector<std::string_view> required;
@@ -72,6 +80,10 @@ class ObjectReader {
   void required_number(std::string_view key, double& value, const Quantity& q, const KeyText& text);
   /// Stays unset when absent; then nothing is recorded.
   void optional_number(std::string_view key, std::optional<double>& value, const Quantity& q, const KeyText& text);
+  /// A number that may instead be given in another unit, under a key of its own; recorded under the first. Without
+  /// `required` the value on entry is the default.
+  void number_in_either(std::string_view key, double& value, const Quantity& q, const KeyText& text, bool required,
+                        const OtherUnit& other);
   template <std::integral T>
   void integer(std::string_view key, T& value, const Quantity& q, const KeyText& text) {
     if (const auto read = read_number(key, q, text, "integer", value)) value = static_cast<T>(*read);

@@ -58,4 +58,8 @@ void check_choices(const Case& c, Faults& faults);
 /// Legal input that is often a mistake: an open end within reach, a wall lower than the slide, a coarse time step.
 std::vector<Fault> find_warnings(const Case& c);
 
+// unlikely_values.cpp
+/// Warnings of values in the allowed range that no soil has, with the unit that was probably meant.
+void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings);
+
 }  // namespace talus

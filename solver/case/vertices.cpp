@@ -1,20 +1,73 @@
 #include "case/vertices.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <span>
+
+#include "case/survey_table.hpp"
 #include "support/csv.hpp"
 #include "support/text.hpp"
 
 namespace talus {
 namespace {
 
+/// Elevations that stand for "no data" in elevation models and spreadsheets; the largest numbers of single precision
+/// and 1e20 are others.
+constexpr double no_data_codes[] = {-9999, -99999, -999999, -32767, -32768, 9999, 99999, 999999};
+constexpr std::string_view no_data_words[] = {"nan", "na", "n/a", "null", "none", "nodata", "no data", "-", "*"};
+
+bool is_no_data(double elevation) {
+  return std::ranges::find(no_data_codes, elevation) != std::end(no_data_codes) || std::abs(elevation) >= 1e20;
+}
+
+bool is_no_data(std::string word) {
+  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return word.empty() || std::ranges::find(no_data_words, word) != std::end(no_data_words);
+}
+
+/// Whether elevation k stands alone: more than 1,000 m above or below its neighbours on both sides, and steeper than
+/// 2 : 1 towards both. No ground on land does that.
+bool is_spike(std::span<const Vec2> line, std::size_t k) {
+  if (k == 0 || k + 1 >= line.size()) return false;
+  const Vec2 before = line[k] - line[k - 1], after = line[k] - line[k + 1];
+  const auto steep = [](Vec2 step) { return std::abs(step.y) > 1000.0 && std::abs(step.y) > 2.0 * std::abs(step.x); };
+  return steep(before) && steep(after) && (before.y > 0.0) == (after.y > 0.0);
+}
+
+std::string no_data_message(const std::string& value) {
+  return "elevation " + value + " stands for no data; remove the vertex or give the elevation";
+}
+
+/// Faults of elevations that are none: the first, and how many more.
+void check_no_data(const Vertices& v, Faults& faults) {
+  std::optional<std::size_t> first;
+  std::size_t more = 0;
+  for (std::size_t k = 0; k < v.points.size(); ++k) {
+    if (!is_no_data(v.points[k].y) && !is_spike(v.points, k)) continue;
+    more += first ? 1 : 0;
+    first = first.value_or(k);
+  }
+  if (!first) return;
+  const double y = v.points[*first].y;
+  const std::string rest =
+      more == 0 ? "" : " (and " + std::to_string(more) + (more == 1 ? " more vertex)" : " more vertices)");
+  faults.add(v.location(*first), (is_no_data(y) ? no_data_message(to_text(y))
+                                                : "elevation " + to_text(y) + " lies more than 1,000 m from both its " +
+                                                      "neighbours: no data, or a slip of the unit") +
+                                     rest);
+}
+
 /// A coordinate of a CSV file, or nothing and a fault.
-std::optional<double> read_coordinate(const std::string& field, const std::string& location, Faults& faults) {
-  const std::optional<double> x = to_number(field);
+std::optional<double> read_coordinate(const std::string& cell, bool elevation, int line, LineFaults& found) {
+  const std::optional<double> x = to_number(cell);
   if (x && coordinate.allows(*x)) return *x + 0.0;  // -0 becomes 0
-  if (x)
-    faults.add(location, shorten(field) + " is out of range; " + coordinate.describe());
+  if (elevation && (x ? is_no_data(*x) : is_no_data(cell)))
+    found.add("no data", line, no_data_message(in_quotes(cell)));
+  else if (x)
+    found.add("range", line, shorten(cell) + " is out of range; " + coordinate.describe());
   else
-    faults.add(location, in_quotes(field) + " is not a number" +
-                             (field.find(',') == std::string::npos ? "" : "; write a decimal point"));
+    found.add("number", line, in_quotes(cell) + " is not a number");
   return {};
 }
 
@@ -39,15 +92,38 @@ Vertices read_inline(const Json& value, const std::string& pointer, Faults& faul
   return out;
 }
 
-/// The text of a CSV beside the case; a name with a directory is refused before a file is opened.
+/// Whether a name is a relative path that goes down only: names joined by slashes, none of which begins with a point.
+bool goes_down(const std::string& name) {
+  if (name.find('\\') != std::string::npos || name.find('\0') != std::string::npos) return false;
+  for (std::size_t begin = 0; begin <= name.size();) {
+    const std::size_t end = std::min(name.find('/', begin), name.size());
+    if (end == begin || name[begin] == '.') return false;
+    begin = end + 1;
+  }
+  return true;
+}
+
+/// Whether a file lies in the directory or below it once all links are followed.
+bool lies_in(const std::filesystem::path& file, const std::filesystem::path& directory) {
+  std::error_code error;
+  const auto base = std::filesystem::canonical(directory.empty() ? "." : directory, error);
+  const auto target = error ? std::filesystem::path() : std::filesystem::canonical(file, error);
+  return error || std::ranges::mismatch(base, target).in1 == base.end();  // reading reports what is missing
+}
+
+/// The text of a CSV in the case's directory or below; any other name is refused before a file is opened.
 std::optional<std::string> csv_text(const Json& value, const std::string& pointer,
                                     const std::filesystem::path& directory, Faults& faults) {
   const std::string* name = value.get_ptr<const std::string*>();
-  if (name == nullptr || name->empty() || name->starts_with('.') || name->find_first_of("/\\") != std::string::npos) {
-    faults.add(pointer, quote(value) + " is not the plain name of a CSV file beside the case");
+  if (name == nullptr || !goes_down(*name)) {
+    faults.add(pointer, quote(value) + " is not the name of a CSV file beside the case or in a directory below it");
     return {};
   }
   const std::filesystem::path file = directory / *name;
+  if (!lies_in(file, directory)) {
+    faults.add(pointer, quote(value) + " is a link to a file outside the case's directory");
+    return {};
+  }
   try {
     return read_text(file);
   } catch (const IoError& e) {
@@ -66,9 +142,10 @@ void declare_vertices(ObjectReader& in, const std::string& inline_key, const std
              "Unit: m; range: each coordinate >= -1e6 and <= 1e6, " + std::to_string(count.least) + " to " +
                  std::to_string(count.most) + " vertices; ");
   in.declare(
-      csv_key, {{"type", "string"}, {"minLength", 1}, {"pattern", R"(^[^./\\][^/\\]*$)"}},
-      {"The same as a CSV file beside the case, given by its plain name: two columns x, y in metres, separated by "
-       "comma, semicolon or tab; one header line, blank lines and # comments are skipped.",
+      csv_key, {{"type", "string"}, {"minLength", 1}, {"pattern", R"(^[^./\\][^/\\]*(/[^./\\][^/\\]*)*$)"}},
+      {"The same as a CSV file beside the case or in a directory below it: distance and elevation in metres, separated "
+       "by comma, semicolon, tab or blanks. Of several columns those count that a header names x, distance, chainage, "
+       "station or offset, and y, z, elevation or height.",
        text.source},
       "");
 }
@@ -81,21 +158,15 @@ std::string Vertices::location(std::size_t k) const {
 
 Vertices read_csv(std::string_view text, const std::string& name, Faults& faults) {
   Vertices out{{}, name};
-  CsvRows rows(text, CsvStyle::by_hand);
-  for (bool first = true; rows.next() && out.points.size() <= most_vertices; first = false) {
-    const std::vector<std::string>& fields = rows.fields();
-    if (first && fields.size() == 2 && !to_number(fields[0]) && !to_number(fields[1])) continue;  // the header
-    const std::string location = name + ":" + std::to_string(rows.line());
-    if (fields.size() != 2) {
-      faults.add(location, "has " + std::to_string(fields.size()) + " columns, expected 2: x, y in metres");
-      continue;
-    }
-    const auto x = read_coordinate(fields[0], location, faults);
-    const auto y = x ? read_coordinate(fields[1], location, faults) : std::nullopt;
+  LineFaults found(name);
+  for (const SurveyRow& row : read_survey_table(decoded(text), most_vertices + 1, found)) {
+    const auto x = read_coordinate(row.x, false, row.line, found);
+    const auto y = x ? read_coordinate(row.y, true, row.line, found) : std::nullopt;
     if (!y) continue;
     out.points.push_back({*x, *y});
-    out.lines.push_back(rows.line());
+    out.lines.push_back(row.line);
   }
+  found.report(faults);
   if (out.points.size() > most_vertices)
     faults.add(name, "has more than " + std::to_string(most_vertices) + " vertices");
   return out;
@@ -116,6 +187,7 @@ Vertices read_vertices(ObjectReader& in, std::string_view key, Size count, const
     out = read_inline(*points, out.source, in.faults());
   else if (const auto content = csv_text(*csv, in.pointer(csv_key), directory, in.faults()))
     out = read_csv(*content, csv->get<std::string>(), in.faults());
+  if (in.faults().size() == before) check_no_data(out, in.faults());
   if (in.faults().size() == before && out.points.size() < count.least)
     in.faults().add(out.source, "has " + std::to_string(out.points.size()) + " vertices, at least " +
                                     std::to_string(count.least) + " are needed");

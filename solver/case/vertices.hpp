@@ -1,5 +1,5 @@
 #pragma once
-// Polylines of a case: inline in the JSON or in a two-column CSV file beside it.
+// Polylines of a case: inline in the JSON or in a CSV file beside it.
 
 #include <filesystem>
 #include <string>
@@ -33,7 +33,8 @@ struct Vertices {
 Vertices read_vertices(ObjectReader& in, std::string_view key, Size count, const std::filesystem::path& directory,
                        const KeyText& text, bool required = true);
 
-/// Two columns x, y [m]; separator comma, semicolon or tab; one header line, blank lines and # comments are skipped.
+/// The vertices of a table of distances and elevations [m], in any form that read_survey_table takes and any encoding
+/// that decoded() tells.
 Vertices read_csv(std::string_view text, const std::string& name, Faults& faults);
 
 /// "(3, 4.5)"

@@ -30,6 +30,7 @@ struct ValidateOptions {
 /// What a run of the case takes.
 struct Demand {
   std::size_t soil = 0, wall = 0;
+  SlideMass mass;
   double step = 0.0;  ///< [s]
   double steps = 0.0;
   double memory = 0.0;  ///< [bytes]
@@ -43,6 +44,7 @@ Demand measure(const Case& c) {
   const ParticlePlan plan = plan_particles(c.model);
   d.soil = plan.soil.size();
   d.wall = plan.walls.size();
+  d.mass = slide_mass(c.model, plan);
   d.step = first_step(c.model);
   d.steps = std::ceil(c.model.time.end / d.step * (1.0 - 1e-12));
   d.memory = run_memory(static_cast<double>(d.soil + d.wall));
@@ -66,10 +68,14 @@ Json to_json(const std::vector<Fault>& faults) {
 void print_json(const Json& value) { std::cout << value.dump(2, ' ', false, Json::error_handler_t::replace) << "\n"; }
 
 Json to_json(const LoadedCase& loaded, const Demand& d) {
-  Json out = {{"valid", true},           {"title", loaded.value.title},
-              {"hash", loaded.hash},     {"particles", {{"soil", d.soil}, {"wall", d.wall}}},
-              {"step_s", d.step},        {"steps", d.steps},
-              {"memory_bytes", d.memory}};
+  Json out = {{"valid", true},
+              {"title", loaded.value.title},
+              {"hash", loaded.hash},
+              {"particles", {{"soil", d.soil}, {"wall", d.wall}}},
+              {"step_s", d.step},
+              {"steps", d.steps},
+              {"memory_bytes", d.memory},
+              {"mass_kg_m", {{"filled", d.mass.filled}, {"outline", d.mass.outline}}}};
   if (d.captured_variance) out["field"] = {{"terms", d.field_terms}, {"captured_variance", *d.captured_variance}};
   out["warnings"] = to_json(loaded.warnings);
   return out;
@@ -78,6 +84,8 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
 void print_text(const LoadedCase& loaded, const Demand& d) {
   std::printf("%s\n", loaded.value.title.c_str());
   std::printf("particles          %zu soil + %zu wall\n", d.soil, d.wall);
+  std::printf("mass               %.0f kg/m, %+.2f %% of the outlines'\n", d.mass.filled,
+              100.0 * (d.mass.filled / d.mass.outline - 1.0));
   std::printf("time step          %.3g s%s\n", d.step,
               loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");
   std::printf("steps              about %.0f to %.4g s\n", d.steps, loaded.value.model.time.end);

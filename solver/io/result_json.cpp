@@ -32,6 +32,11 @@ class ObjectIo {
   ObjectIo object(const char* key) {
     return {member(key), reading_ ? Direction::read : Direction::write, file_, pointer_ + "/" + key};
   }
+  /// For an object that earlier versions did not write.
+  template <class Transfer>
+  void object_or_skip(const char* key, Transfer&& transfer) {
+    if (!reading_ || node_.contains(key)) transfer(object(key));
+  }
   void number(const char* key, double& value, double least = unbounded) {
     transfer(key, value, &Json::is_number, "a number", least);
     if (reading_ && value < least) fail(key, "a number", least);
@@ -179,6 +184,10 @@ void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
   root.integer("penetrated", result.penetrated);
   root.integer("left_domain", result.left_domain);
   root.boolean("at_rest", result.at_rest);
+  root.object_or_skip("mass_kg_m", [&](ObjectIo mass) {
+    mass.number("filled", result.mass.filled, 0.0);
+    mass.number("outline", result.mass.outline, 0.0);
+  });
   root.ending("ending", result.ending);
   root.text_or_empty("backend", result.backend);
   root.text_or_empty("simd", result.simd);

@@ -1,9 +1,6 @@
 #include "particles/geometry.hpp"
 
 #include <algorithm>
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/geometries/polygon.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -12,17 +9,6 @@
 
 namespace talus {
 namespace {
-
-namespace bg = boost::geometry;
-using Point = bg::model::d2::point_xy<double>;
-using Polygon = bg::model::polygon<Point>;
-
-Polygon to_polygon(std::span<const Vec2> outline) {
-  Polygon polygon;
-  for (const Vec2& v : outline) bg::append(polygon.outer(), Point(v.x, v.y));
-  bg::correct(polygon);
-  return polygon;
-}
 
 /// Heights at which the vertical through x crosses the outline, increasing. A vertex belongs to the edge on its right.
 std::vector<double> crossings(std::span<const Vec2> outline, double x) {
@@ -65,6 +51,13 @@ double mass_above(std::span<const SlidePart> slide, std::span<const Material> ma
   double mass = 0.0;
   for (const SlidePart& part : slide)
     mass += materials[static_cast<std::size_t>(part.material)].rho0 * thickness_above(part.outline, point);
+  return mass;
+}
+
+double mass_of(std::span<const SlidePart> slide, std::span<const Material> materials) {
+  double mass = 0.0;
+  for (const SlidePart& part : slide)
+    mass += materials[static_cast<std::size_t>(part.material)].rho0 * area(part.outline);
   return mass;
 }
 
@@ -114,34 +107,6 @@ std::vector<Polyline> wall_lines(std::span<const Boundary> boundaries, double dx
     lines.push_back(placement == Placement::nodes ? offset_into_rock(line, 0.5 * dx) : line);
   }
   return lines;
-}
-
-std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<const Polyline> walls, double dx,
-                                  Placement placement) {
-  const bool nodes = placement == Placement::nodes;
-  const Box box = bounding_box(slide);
-  const double shift = nodes ? 0.0 : 0.5, tolerance = 1e-6 * dx;
-  const auto columns = static_cast<std::int64_t>(std::floor(box.width() / dx + 1e-6)) + 1;
-  const auto rows = static_cast<std::int64_t>(std::floor(box.height() / dx + 1e-6)) + 1;
-  const Ground ground({walls.begin(), walls.end()});
-  std::vector<Polygon> polygons;
-  for (const SlidePart& part : slide) polygons.push_back(to_polygon(part.outline));
-  std::vector<SoilPoint> points;
-  for (std::int64_t row = 0; row < rows; ++row)
-    for (std::int64_t column = 0; column < columns; ++column) {
-      const Vec2 x{box.lo.x + (static_cast<double>(column) + shift) * dx,
-                   box.lo.y + (static_cast<double>(row) + shift) * dx};
-      // Lattice nodes that fall on the far edges would be lost to rounding: test a point pulled in by a hair.
-      const Vec2 probe = nodes ? Vec2{std::clamp(x.x, box.lo.x + tolerance, box.hi.x - tolerance),
-                                      std::clamp(x.y, box.lo.y + tolerance, box.hi.y - tolerance)}
-                               : x;
-      for (std::size_t k = 0; k < slide.size(); ++k) {
-        if (!bg::covered_by(Point(probe.x, probe.y), polygons[k])) continue;
-        if (ground.nearest(x).distance >= 0.5 * dx - tolerance) points.push_back({x, slide[k].material});
-        break;
-      }
-    }
-  return points;
 }
 
 std::vector<WallPoint> fill_walls(const Polyline& wall, double dx, int layers, std::int32_t boundary) {

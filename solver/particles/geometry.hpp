@@ -1,6 +1,5 @@
 #pragma once
-// From outlines to points: area, depth of burial, distance to a polyline, the lattice that fills a slide, and the rows
-// of particles that line a wall.
+// From outlines to points: area, depth of burial, walls as lines, and the rows of particles that line them.
 
 #include <cstdint>
 #include <span>
@@ -24,6 +23,9 @@ double thickness_above(std::span<const Vec2> outline, Vec2 point);
 /// Mass of soil above a point per area of ground, sum of rho0 * thickness [kg/m2].
 double mass_above(std::span<const SlidePart> slide, std::span<const Material> materials, Vec2 point);
 
+/// Mass of the soil in the outlines per metre of width, sum of rho0 * area [kg/m].
+double mass_of(std::span<const SlidePart> slide, std::span<const Material> materials);
+
 /// The polyline moved by `offset` towards the rock (mitred corners).
 Polyline offset_into_rock(const Polyline& line, double offset);
 
@@ -33,18 +35,6 @@ Polyline ground_line(const Terrain& terrain);
 /// The lines that no particle may cross, one for each boundary: its own, fitted to the spacing (fit_line); for
 /// Placement::nodes half a spacing behind it.
 std::vector<Polyline> wall_lines(std::span<const Boundary> boundaries, double dx, Placement placement);
-
-/// A soil particle to be.
-struct SoilPoint {
-  Vec2 x;        ///< [m]
-  int material;  ///< index into Model::materials
-};
-
-/// Fills the outlines with a square lattice of spacing dx, row by row from the bottom left.
-/// Points nearer than dx/2 to a wall line are left out: they would start compressed against the wall.
-/// @param walls  as wall_lines() returns them
-std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<const Polyline> walls, double dx,
-                                  Placement placement);
 
 /// A wall particle: where it stands and the piece of wall it stands behind. Fixed particles fill the rock behind the
 /// wall line, [Z20] 2.1 and method of Takeda 1994, Morris 1997.

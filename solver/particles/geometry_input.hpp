@@ -54,7 +54,8 @@ struct SlidePart {
 
 /// Where the particles stand relative to the outlines.
 enum class Placement {
-  cells,  ///< centres of square cells that tile the plane: a particle stays spacing/2 away from the wall
+  cells,        ///< centroids of square cells, cut at the outlines: the particles carry the mass of the outlines
+  whole_cells,  ///< centres of square cells that lie in an outline: a particle stays spacing/2 away from the wall
   nodes,  ///< nodes of the lattice, edges included, as in [Z20] Fig. 3: the wall line lies spacing/2 behind the bed
 };
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "particles/geometry.hpp"
+#include "particles/fill.hpp"
 #include "particles/particles.hpp"
 #include "simulation/model.hpp"
 #include "sph/packed_flow.hpp"

@@ -71,6 +71,12 @@ double connected_front(const Soil& soil, double gap) {
 
 double farthest(const Soil& soil) { return *std::max_element(soil.x.begin(), soil.x.end()); }
 
+double total_mass(const Soil& soil) {
+  double mass = 0.0;
+  for (const auto i : by_id(soil)) mass += soil.m[i];
+  return mass;
+}
+
 Vec2 centre_of_mass(const Soil& soil) {
   Vec2 sum;
   double mass = 0.0;
@@ -87,11 +93,7 @@ double kinetic_energy(const Soil& soil) {
   return energy;
 }
 
-double rms_speed(const Soil& soil) {
-  double mass = 0.0;
-  for (const auto i : by_id(soil)) mass += soil.m[i];
-  return std::sqrt(2.0 * kinetic_energy(soil) / mass);
-}
+double rms_speed(const Soil& soil) { return std::sqrt(2.0 * kinetic_energy(soil) / total_mass(soil)); }
 
 double max_speed(const Soil& soil) {
   double v2 = 0.0;

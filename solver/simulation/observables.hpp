@@ -16,6 +16,7 @@ Measures measure_fronts(const Soil& soil, double left, double dx);
 /// Farthest x of any soil particle [m].
 double farthest(const Soil& soil);
 /// sum m x / sum m [m].
+double total_mass(const Soil& soil);  ///< [kg/m]
 Vec2 centre_of_mass(const Soil& soil);
 /// sum m v^2 / 2 [J/m].
 double kinetic_energy(const Soil& soil);

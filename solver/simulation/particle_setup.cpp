@@ -29,6 +29,16 @@ ParticlePlan plan_particles(const Model& model) {
   return plan;
 }
 
+double particle_mass(const Model& model, const SoilPoint& point) {
+  return model.materials[static_cast<std::size_t>(point.material)].rho0 * model.dx * model.dx * point.cells;
+}
+
+SlideMass slide_mass(const Model& model, const ParticlePlan& plan) {
+  SlideMass mass{0.0, mass_of(model.slide, model.materials)};
+  for (const SoilPoint& point : plan.soil) mass.filled += particle_mass(model, point);
+  return mass;
+}
+
 SoilProperties material_properties(const Model& model, const ParticlePlan& plan) {
   SoilProperties properties;
   for (const SoilPoint& point : plan.soil) {
@@ -101,7 +111,7 @@ Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& p
     soil.x[i] = points[i].x.x;
     soil.y[i] = points[i].x.y;
     soil.rho[i] = k.soils[material].eos.density(p);
-    soil.m[i] = model.materials[material].rho0 * model.dx * model.dx;
+    soil.m[i] = particle_mass(model, points[i]);
     soil.material[i] = points[i].material;
     soil.id[i] = static_cast<std::int32_t>(i);
   }

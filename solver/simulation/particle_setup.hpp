@@ -4,9 +4,11 @@
 #include <vector>
 
 #include "integrate/time_step.hpp"
+#include "particles/fill.hpp"
 #include "particles/geometry.hpp"
 #include "particles/particles.hpp"
 #include "simulation/model.hpp"
+#include "simulation/run_result.hpp"
 #include "sph/flow_constants.hpp"
 
 namespace talus {
@@ -19,6 +21,11 @@ struct ParticlePlan {
 /// Fills the slide and lines the walls.
 /// @throws ConfigError when there is no soil particle, or more particles than Model::max_particles
 ParticlePlan plan_particles(const Model& model);
+
+/// Mass of a particle of the plan per metre of width [kg/m].
+double particle_mass(const Model& model, const SoilPoint& point);
+/// Mass that the particles of a plan carry, and that of the outlines.
+SlideMass slide_mass(const Model& model, const ParticlePlan& plan);
 
 /// Properties of the soil particles of a plan, in its order: those that may vary within a material.
 struct SoilProperties {

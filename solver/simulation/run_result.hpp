@@ -19,6 +19,12 @@ struct FieldSummary {
   std::int64_t terms = 0;          ///< coefficients used
 };
 
+/// What the particles carry of the soil of a case, per metre of width.
+struct SlideMass {
+  double filled = 0.0;   ///< sum over the particles [kg/m]; 0: not recorded
+  double outline = 0.0;  ///< sum of density x area of the outlines [kg/m]; 0: not recorded
+};
+
 /// Why a run ended.
 enum class Ending { end_time, at_rest, interrupted };
 
@@ -33,11 +39,12 @@ struct RunResult {
   std::int64_t evaluations = 0;  ///< right-hand sides evaluated (whole particle set each)
   double wall_clock = 0.0;       ///< [s]
   int threads = 1;
-  double max_speed = 0.0;         ///< peak over the run [m/s]
-  double final_max_speed = 0.0;   ///< [m/s]
-  std::int64_t penetrated = 0;    ///< soil particles that were ever deep in the ground; must be 0
-  std::int64_t left_domain = 0;   ///< soil particles that left through an open end
-  bool at_rest = false;           ///< final_max_speed below 1 % of sqrt(|g| H)
+  double max_speed = 0.0;        ///< peak over the run [m/s]
+  double final_max_speed = 0.0;  ///< [m/s]
+  std::int64_t penetrated = 0;   ///< soil particles that were ever deep in the ground; must be 0
+  std::int64_t left_domain = 0;  ///< soil particles that left through an open end
+  bool at_rest = false;          ///< final_max_speed below 1 % of sqrt(|g| H)
+  SlideMass mass;
   std::string digest;             ///< 16 hex digits over the final state in order of id
   std::string backend = "plain";  ///< the loops that ran: "vectorised" or "plain"; empty: not recorded
   std::string simd = "none";      ///< instruction set of the vectorised loops, otherwise "none"; empty: not recorded

@@ -13,6 +13,15 @@ enum class CsvStyle {
   by_hand,  ///< a person's: commas, semicolons or tabs, # comments, a byte order mark, blanks around fields
 };
 
+/// Splits a row at a separator; fields lose their quotation marks. A blank as separator stands for any run of blanks
+/// and tabs.
+/// @return no fields at all where a quotation mark is not closed
+std::vector<std::string> split_fields(std::string_view row, char separator);
+
+/// The bytes of a text file as UTF-8 without a byte order mark: from UTF-16 of either byte order, told by its mark or
+/// by the zero byte of its first character; from Latin-1 where the bytes are not UTF-8.
+std::string decoded(std::string_view bytes);
+
 /// Goes through the rows of a text; holds one row at a time. Blank lines are skipped; a row ends with its line.
 class CsvRows {
  public:
@@ -28,8 +37,6 @@ class CsvRows {
   std::string_view text() const { return row_; }
 
  private:
-  void split();
-
   std::string_view rest_;
   CsvStyle style_;
   std::string_view row_;

@@ -108,7 +108,8 @@ class Mutations {
     if (schema.contains("maxLength"))
       expect_refused(at, std::string(schema["maxLength"].get<std::size_t>() + 1, 'x'), at);
     if (schema.contains("pattern"))
-      for (const char* wrong : {"../x.csv", "/x.csv", "a/b.csv", ".csv", "a\\b"}) expect_refused(at, wrong, at);
+      for (const char* wrong : {"../x.csv", "/x.csv", "a/../b.csv", "a//b.csv", "a/", ".csv", "a\\b"})
+        expect_refused(at, wrong, at);
   }
 
   void array(const json& schema, const std::string& at, const std::string& schema_at) {
@@ -159,6 +160,9 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   other["slide"] = {{"ground_surface_m", {{0, 20}, {6, 20}, {24, 6}}}, {"slip_surface_csv", "case-bed.csv"}};
   mutations.spoil(other);
   other["slide"] = {{"outlines", {{{"outline_csv", "case-outline.csv"}}}}};
+  mutations.spoil(other);
+  other["material"] = {{"unit_weight_kN_m3", 19}, {"friction_angle_deg", 24}, {"cohesion_kPa", 5}};
+  other["slide"]["outlines"][0]["material"] = {{"unit_weight_kN_m3", 18}, {"cohesion_kPa", 2}};
   mutations.spoil(other);
   std::set<std::string> keys;
   collect(test::SchemaCheck("case").document(), "", keys);

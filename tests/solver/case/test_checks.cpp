@@ -101,12 +101,41 @@ TEST(Warnings, AHypercubeThatIsToStopEarly) {
   EXPECT_EQ(test::load(with("/study/sampling", "latin_hypercube", stopping)).warnings.size(), 1u);
 }
 
-TEST(Warnings, ADensityInAnotherUnit) {
-  EXPECT_TRUE(test::load(with("/material/density_kg_m3", 500)).warnings.empty());
-  const LoadedCase kilonewtons = test::load(with("/material/density_kg_m3", 19.4));
-  ASSERT_EQ(kilonewtons.warnings.size(), 1u);
-  EXPECT_EQ(kilonewtons.warnings[0].pointer, "/material/density_kg_m3");
-  EXPECT_EQ(test::load(with("/material/density_kg_m3", 5001)).warnings.size(), 1u);
+/// "pointer: message" of the only warning; "" where there is none.
+std::string warning_of(const Json& document) {
+  const LoadedCase loaded = test::load(document);
+  EXPECT_LE(loaded.warnings.size(), 1u);
+  return loaded.warnings.empty() ? "" : loaded.warnings[0].pointer + ": " + loaded.warnings[0].message;
+}
+
+TEST(Warnings, ValuesThatNoSoilHasNameTheUnitMeant) {
+  struct Limits {
+    const char* key;
+    double usual, slip;
+    const char* meant;  ///< what the warning says of the slip
+  };
+  const Limits all[] = {{"/material/density_kg_m3", 500, 19.4, "a unit weight in kN/m3 is given as unit_weight_kN_m3"},
+                        {"/material/density_kg_m3", 5000, 1.95, "a density in t/m3 or g/cm3 is multiplied by 1000"},
+                        {"/material/density_kg_m3", 2000, 5001, "(500 to 5000 kg/m3)"},
+                        {"/material/cohesion_Pa", 0, 5, "a cohesion in kPa is given as cohesion_kPa"},
+                        {"/material/cohesion_Pa", 50, 49.9, "cohesion_kPa"},
+                        {"/material/cohesion_Pa", 5e6, 5.1e6, "(0, or 50 Pa to 5 MPa)"},
+                        {"/material/friction_angle_deg", 36, 0.6, "a value in radians, or tan(phi)"},
+                        {"/material/friction_angle_deg", 60, 61, "(0, or 2 to 60 deg)"},
+                        {"/material/viscosity_Pa_s", 1e6, 1.1e6, "(up to 1e6 Pa s)"},
+                        {"/rheology/shear_modulus_Pa", 2e7, 20, "a modulus in kPa or MPa"}};
+  Json wide = with("/terrain/right_end", "wall");  // no warning of an open end at small friction angles
+  for (const Limits& one : all) {
+    EXPECT_EQ(warning_of(with(one.key, one.usual, wide)), "") << one.key;
+    const std::string warning = warning_of(with(one.key, one.slip, wide));
+    EXPECT_EQ(warning.find(one.key), 0u) << warning;
+    EXPECT_NE(warning.find(one.meant), std::string::npos) << warning;
+  }
+}
+
+TEST(Warnings, ALayerIsWarnedOfWhereItStands) {
+  const Json layered = with("/slide/outlines/0/material", {{"density_kg_m3", 19.4}});
+  EXPECT_EQ(warning_of(layered).find("/slide/outlines/0/material/density_kg_m3: 19.4 kg/m3"), 0u);
 }
 
 }  // namespace

@@ -39,6 +39,43 @@ TEST(LoadCase, ConvertsDegreesToRadians) {
   EXPECT_NEAR(c.model.boundaries.at(0).phi, std::numbers::pi / 12, 1e-15);
 }
 
+TEST(LoadCase, TakesTheUnitsOfALaboratory) {
+  Json document = minimal();
+  document["material"] = {{"unit_weight_kN_m3", 19.62}, {"friction_angle_deg", 30}, {"cohesion_kPa", 5}};
+  document["slide"]["outlines"][0]["material"] = {{"unit_weight_kN_m3", 9.81}, {"cohesion_kPa", 0.25}};
+  const LoadedCase loaded = test::load(document);
+  const auto& materials = loaded.value.model.materials;
+  ASSERT_EQ(materials.size(), 2u);
+  EXPECT_NEAR(materials[0].rho0, 19.62 * 1000 / 9.81, 1e-9);
+  EXPECT_EQ(materials[0].c, 5 * 1000.0);
+  EXPECT_NEAR(materials[1].rho0, 1000.0, 1e-9);
+  EXPECT_EQ(materials[1].c, 250.0);
+  EXPECT_EQ(loaded.resolved["material"]["cohesion_Pa"], 5000.0);
+  EXPECT_FALSE(loaded.resolved["material"].contains("cohesion_kPa"));
+  EXPECT_FALSE(loaded.resolved["material"].contains("unit_weight_kN_m3"));
+  EXPECT_EQ(test::load(with("/gravity_m_s2", 98.1, document)).value.model.materials, materials)
+      << "a unit weight is stated at 9.81 m/s2, whatever the centrifuge does";
+}
+
+TEST(LoadCase, RefusesAValueInTwoUnits) {
+  const auto both = [](const char* at, const char* key, const char* other) {
+    Json document = with("/slide/outlines/0/material", {{"name", "layer"}});
+    document[Json::json_pointer(at)][key] = 1900;
+    document[Json::json_pointer(at)][other] = 19;
+    return faults_of(document);
+  };
+  for (const char* at : {"/material", "/slide/outlines/0/material"}) {
+    EXPECT_EQ(both(at, "density_kg_m3", "unit_weight_kN_m3"),
+              std::vector{at + std::string("/unit_weight_kN_m3: is given beside density_kg_m3; give one of the two")});
+    EXPECT_EQ(both(at, "cohesion_Pa", "cohesion_kPa"),
+              std::vector{at + std::string("/cohesion_kPa: is given beside cohesion_Pa; give one of the two")});
+  }
+  EXPECT_EQ(
+      faults_of(with("/material", {{"friction_angle_deg", 30}})),
+      std::vector<std::string>{"/material/density_kg_m3: is missing (or unit_weight_kN_m3); unit kg/m3, allowed > "
+                               "0 and <= 1e+05"});
+}
+
 TEST(LoadCase, EveryNumberReachesItsMember) {
   Json document =
       with("/material",

@@ -45,39 +45,5 @@ TEST(Geometry, OffsetOfARightAngleKeepsBothDistances) {
   EXPECT_NEAR(moved.vertices[2].y, -0.5, 1e-14);
 }
 
-TEST(Geometry, FillTilesARectangleWithCellCentres) {
-  const std::vector<Polyline> ground{{{{-1, 0}, {5, 0}}, false}};
-  const auto points =
-      fill_slide(std::vector<SlidePart>{{{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, 0}}, ground, 0.1, Placement::cells);
-  ASSERT_EQ(points.size(), 20u * 10u);
-  EXPECT_NEAR(points.front().x.x, 0.05, 1e-12);
-  EXPECT_NEAR(points.front().x.y, 0.05, 1e-12);
-}
-
-TEST(Geometry, FillOnNodesIncludesTheEdges) {
-  const std::vector<Boundary> bed{{.line = {{{-1, 0}, {12, 0}}, false}}};
-  const auto ground = wall_lines(bed, 0.1, Placement::nodes);
-  const auto points =
-      fill_slide(std::vector<SlidePart>{{{{0, 0}, {10, 0}, {10, 4}, {0, 4}}, 0}}, ground, 0.1, Placement::nodes);
-  EXPECT_EQ(points.size(), 101u * 41u);  // [Z20] 3.1
-}
-
-TEST(Geometry, FillKeepsHalfASpacingFromASlopingBed) {
-  const Terrain slope{{{0, 5}, {10, 0}, {20, 0}}, false, true, false, 9, 0};
-  const std::vector<Polyline> walls{ground_line(slope)};
-  const auto points =
-      fill_slide(std::vector<SlidePart>{{{{0, 5}, {10, 0}, {10, 6}, {0, 6}}, 0}}, walls, 0.2, Placement::cells);
-  ASSERT_FALSE(points.empty());
-  const Ground ground(walls);
-  for (const SoilPoint& p : points) EXPECT_GE(ground.nearest(p.x).distance, 0.1 - 1e-6);
-}
-
-TEST(Geometry, FillGivesEachLayerItsMaterial) {
-  const std::vector<Polyline> ground{{{{-1, 0}, {5, 0}}, false}};
-  const std::vector<SlidePart> layers{{{{0, 0}, {2, 0}, {2, 1}, {0, 1}}, 0}, {{{0, 1}, {2, 1}, {2, 2}, {0, 2}}, 1}};
-  for (const SoilPoint& p : fill_slide(layers, ground, 0.25, Placement::cells))
-    EXPECT_EQ(p.material, p.x.y > 1 ? 1 : 0);
-}
-
 }  // namespace
 }  // namespace talus

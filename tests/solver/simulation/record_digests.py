@@ -18,6 +18,7 @@ BED = [[0, 8.2], [14.202, 0], [60, 0]]
 CASE = {
     "title": "A slope of 0.4 m particles, in two layers of different soil",
     "particle_spacing_m": 0.4,
+    "particle_placement": "whole_cells",
     "terrain": {"bed_m": BED, "left_end": "wall", "right_end": "open"},
     "slide": {
         "outlines": [
@@ -81,6 +82,10 @@ def rows():
         yield law | {"particle_placement": "nodes", "walls.max_velocity_ratio": 3, "walls.layers": 4}
         yield law | ONE_SOIL | {"time.fixed_step_s": 0.001}
         yield law | {"time.max_step_s": 0.0005, "time.end_s": 0.05}
+        # Particles of unequal mass.
+        yield law | {"particle_placement": "cells"}
+        yield law | {"particle_placement": "cells", "numerics.precision": "double", "time.end_s": 0.02}
+        yield law | ONE_SOIL | {"particle_placement": "cells", "numerics.integrator": "leapfrog"}
     # Long enough to be sorted again, to come to rest, and to leave the terrain through an open end.
     for integrator in CHOICES["numerics.integrator"]:
         moving = {"numerics.integrator": integrator}

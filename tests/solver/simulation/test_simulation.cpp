@@ -253,6 +253,7 @@ TEST(Simulation, NoParticleAndTooManyAreRefused) {
     EXPECT_NE(std::string(e.what()).find("max_particles"), std::string::npos);
   }
   m = collapse(5.0);
+  m.placement = Placement::whole_cells;
   EXPECT_THROW(plan_particles(m), ConfigError);
 }
 

@@ -42,6 +42,34 @@ TEST(CsvRows, CountsLinesThatItSkips) {
   EXPECT_FALSE(csv.next());
 }
 
+TEST(SplitFields, TakesRunsOfBlanksAsOneSeparator) {
+  EXPECT_EQ(split_fields("1  2\t 3", ' '), (Row{"1", "2", "3"}));
+  EXPECT_EQ(split_fields("a b;;c", ';'), (Row{"a b", "", "c"}));
+}
+
+TEST(Decoded, ReadsEveryEncoding) {
+  using namespace std::string_view_literals;
+  const std::string umlaut = "a\xC3\xB6", face = "\xF0\x9F\x98\x80";  // o with two dots; U+1F600
+  EXPECT_EQ(decoded(umlaut), umlaut);
+  EXPECT_EQ(decoded("\xEF\xBB\xBF" + umlaut), umlaut);
+  EXPECT_EQ(decoded("a\xF6"), umlaut) << "Latin-1";
+  EXPECT_EQ(decoded("\xFF\xFE"
+                    "a\0\xF6\0"sv),
+            umlaut);
+  EXPECT_EQ(decoded("\xFE\xFF\0a\0\xF6"sv), umlaut);
+  EXPECT_EQ(decoded("a\0\xF6\0"sv), umlaut) << "no mark";
+  EXPECT_EQ(decoded("\xFE\xFF\xD8\x3D\xDE\x00"sv), face);
+  EXPECT_EQ(decoded("\xFE\xFF\xD8\x3D\0a"sv),
+            "\xEF\xBF\xBD"
+            "a")
+      << "half a pair";
+  EXPECT_EQ(decoded("\xFF\xFE"
+                    "a\0b"sv),
+            "a")
+      << "half a character at the end";
+  EXPECT_EQ(decoded(""), "");
+}
+
 TEST(CsvQuoted, ReadsBackOnOneLine) {
   EXPECT_EQ(csv_quoted("say \"a\", b\nc"), "\"say \"\"a\"\", b c\"");
   EXPECT_EQ(rows(csv_quoted("say \"a\", b")), (std::vector<Row>{{"say \"a\", b"}}));

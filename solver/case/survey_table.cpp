@@ -1,0 +1,261 @@
+#include "case/survey_table.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <span>
+
+#include "support/csv.hpp"
+#include "support/text.hpp"
+
+namespace talus {
+namespace {
+
+using Names = std::span<const std::string_view>;
+constexpr std::string_view distance_names[] = {"x", "distance", "chainage", "station", "offset"};
+constexpr std::string_view elevation_names[] = {"y", "z", "elevation", "height"};
+constexpr std::string_view other_units[] = {"mm", "cm", "dm", "km", "ft", "feet", "in", "inch", "yd", "mi", "miles"};
+constexpr const char* names_allowed =
+    "distance: x, distance, chainage, station or offset; elevation: y, z, elevation or height";
+
+bool contains(Names names, std::string_view word) { return std::ranges::find(names, word) != names.end(); }
+
+struct Line {
+  int number;
+  std::string_view text;
+  bool comment;
+};
+
+std::string_view without_blanks(std::string_view text) {
+  constexpr std::string_view blanks = " \t";
+  const std::size_t first = text.find_first_not_of(blanks);
+  return first == std::string_view::npos ? std::string_view()
+                                         : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// The lines that are not blank; those that end with CR alone are lines as well.
+std::vector<Line> lines_of(std::string_view text, std::size_t most) {
+  std::vector<Line> lines;
+  for (int number = 1; !text.empty() && lines.size() < most; ++number) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    std::string_view line = without_blanks(text.substr(0, end));
+    text.remove_prefix(text.substr(end).starts_with("\r\n") ? end + 2 : std::min(end + 1, text.size()));
+    const bool comment = line.starts_with('#');
+    if (comment) line = without_blanks(line.substr(1));
+    if (!line.empty()) lines.push_back({number, line, comment});
+  }
+  return lines;
+}
+
+/// Cells of a line; empty ones at its end, as spreadsheets leave them, are dropped.
+std::vector<std::string> cells_of(std::string_view line, char separator) {
+  std::vector<std::string> cells = split_fields(line, separator);
+  for (std::string& cell : cells) cell = without_blanks(cell);
+  while (!cells.empty() && cells.back().empty()) cells.pop_back();
+  return cells;
+}
+
+/// Whether the cell holds a decimal comma: digits, one comma, no point.
+bool has_decimal_comma(std::string_view cell) {
+  const std::size_t comma = cell.find(',');
+  return comma != std::string_view::npos && comma > 0 && std::isdigit(static_cast<unsigned char>(cell[comma - 1])) &&
+         cell.find_first_of(",.", comma + 1) == std::string_view::npos && cell.find('.') == std::string_view::npos;
+}
+
+/// The cell with a decimal point.
+std::string with_point(std::string cell) {
+  if (has_decimal_comma(cell)) cell[cell.find(',')] = '.';
+  return cell;
+}
+
+bool is_number(const std::string& cell) { return to_number(with_point(cell)).has_value(); }
+
+bool is_row_of_numbers(const std::vector<std::string>& cells) { return std::ranges::count_if(cells, is_number) >= 2; }
+
+/// The separator that gives the most rows of numbers, and nothing where none gives any. A comma comes last: in the
+/// others it may be a decimal comma.
+std::optional<char> find_separator(const std::vector<Line>& lines) {
+  std::optional<char> best;
+  std::ptrdiff_t most = 0;
+  for (const char separator : {';', '\t', ' ', ','}) {
+    const auto rows = std::ranges::count_if(
+        lines, [&](const Line& line) { return !line.comment && is_row_of_numbers(cells_of(line.text, separator)); });
+    if (rows > most) {
+      most = rows;
+      best = separator;
+    }
+  }
+  return best;
+}
+
+/// A heading such as "Elevation (m)" or chainage_m: its name in lower case and its unit.
+struct Heading {
+  std::string name, unit;
+
+  explicit Heading(std::string_view cell) {
+    std::vector<std::string> words(1);
+    for (const char c : cell) {
+      if (std::isalnum(static_cast<unsigned char>(c)) != 0 || (static_cast<unsigned char>(c) & 0x80U) != 0)
+        words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      else if (!words.back().empty())
+        words.emplace_back();
+    }
+    name = words.front();
+    unit = words.size() > 1 ? words[1] : "";
+    const bool bracketed = cell.find_first_of("([") != std::string_view::npos;
+    if (!bracketed && words.size() > 1 && !unit.empty() && unit != "m" && !contains(other_units, unit)) name.clear();
+  }
+};
+
+struct Columns {
+  std::size_t x = 0, y = 1;
+  std::size_t most = 2;  ///< cells that a row may have
+};
+
+/// Columns of the two quantities among the headings; more than one of a kind where it cannot be told.
+struct Found {
+  std::vector<std::size_t> x, y;
+
+  explicit Found(const std::vector<std::string>& cells) {
+    std::vector<std::string> names;
+    for (const std::string& cell : cells) names.push_back(Heading(cell).name);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (contains(distance_names, names[k])) x.push_back(k);
+      if (contains(elevation_names, names[k])) y.push_back(k);
+    }
+    const auto named = [&](std::string_view name) { return std::ranges::count(names, name) == 1; };
+    if (!named("x") || !named("y") || y.size() != 1) return;
+    x = {static_cast<std::size_t>(std::ranges::find(names, "x") - names.begin())};
+  }
+  bool some() const { return !x.empty() || !y.empty(); }
+  bool both() const { return !x.empty() && !y.empty(); }
+  bool ambiguous() const { return x.size() > 1 || y.size() > 1; }
+};
+
+std::string list_of(const std::vector<std::string>& cells) {
+  std::string list;
+  for (const std::string& cell : cells) list += (list.empty() ? "" : ", ") + in_quotes(cell);
+  return shorten(list, 200);
+}
+
+/// A table as lines of cells: headings first, then from `first_row` on numbers.
+struct Table {
+  char separator;
+  std::vector<Line> lines;
+  std::size_t first_row = 0;
+
+  std::vector<std::string> cells(std::size_t k) const { return cells_of(lines[k].text, separator); }
+};
+
+/// Refuses columns in another unit than metres: in a heading, or in a line of units beneath it.
+bool refuse_other_units(const Table& table, Columns columns, LineFaults& found) {
+  for (std::size_t k = 0; k < table.first_row; ++k) {
+    const std::vector<std::string> cells = table.cells(k);
+    for (const std::size_t c : {columns.x, columns.y}) {
+      if (c >= cells.size() || cells.size() < 2) continue;
+      const Heading heading(cells[c]);
+      const std::string& unit = contains(other_units, heading.name) ? heading.name : heading.unit;
+      if (!contains(other_units, unit)) continue;
+      found.add("unit", table.lines[k].number,
+                "column " + in_quotes(cells[c]) + " is in " + unit + "; metres are needed");
+      return true;
+    }
+  }
+  return false;
+}
+
+/// The two columns, or nothing and a fault.
+std::optional<Columns> choose_columns(const Table& table, LineFaults& found) {
+  const std::size_t count = table.cells(table.first_row).size();
+  Columns columns;
+  bool named = false;
+  for (std::size_t k = table.first_row; k-- > 0 && !named;) {
+    const std::vector<std::string> cells = table.cells(k);
+    if (cells.size() < count || cells.size() < 2) continue;
+    const Found headings(cells);
+    if (headings.both() && headings.ambiguous()) {
+      found.add("columns", table.lines[k].number,
+                "has several columns of distance or elevation: " + list_of(cells) + "; keep one of each (" +
+                    names_allowed + ")");
+      return {};
+    }
+    if (headings.both())
+      columns = {headings.x[0], headings.y[0], std::max(cells.size(), count)};
+    else if (cells.size() == 2 && headings.some() && !headings.ambiguous())
+      columns =
+          headings.y.empty() ? Columns{headings.x[0], 1 - headings.x[0]} : Columns{1 - headings.y[0], headings.y[0]};
+    named = headings.both() || (cells.size() == 2 && headings.some());
+  }
+  if (!named && count != 2) {
+    found.add("columns", table.lines[table.first_row].number,
+              "has " + std::to_string(count) + " columns and no header that names two of them (" + names_allowed +
+                  (table.separator == ',' ? "); decimal commas need another separator than a comma" : ")"));
+    return {};
+  }
+  if (refuse_other_units(table, columns, found)) return {};
+  return columns;
+}
+
+}  // namespace
+
+void LineFaults::add(std::string_view kind, int line, const std::string& message) {
+  const auto known = std::ranges::find(kinds_, kind, &Kind::name);
+  if (known != kinds_.end())
+    ++known->more;
+  else
+    kinds_.push_back({kind, line, message});
+}
+
+void LineFaults::report(Faults& faults) const {
+  for (const Kind& kind : kinds_) {
+    const std::string place = kind.first_line > 0 ? file_ + ":" + std::to_string(kind.first_line) : file_;
+    const std::string more = kind.more == 0 ? "" : " (and " + std::to_string(kind.more) + " more line";
+    faults.add(place, kind.message + more + (kind.more == 0 ? "" : kind.more == 1 ? ")" : "s)"));
+  }
+}
+
+std::vector<SurveyRow> read_survey_table(std::string_view text, std::size_t most, LineFaults& found) {
+  constexpr std::size_t most_headings = 1000;
+  Table table{',', lines_of(text, most + most_headings)};
+  const std::optional<char> separator = find_separator(table.lines);
+  if (!separator) {
+    found.add("empty", 0, "has no row of two numbers: distance and elevation in metres");
+    return {};
+  }
+  table.separator = *separator;
+  while (table.lines[table.first_row].comment || !is_row_of_numbers(table.cells(table.first_row))) ++table.first_row;
+  const std::optional<Columns> columns = choose_columns(table, found);
+  if (!columns) return {};
+
+  const std::size_t needed = std::max(columns->x, columns->y) + 1;
+  std::vector<SurveyRow> rows;
+  bool points = false, commas = false;
+  for (std::size_t k = 0; k < table.lines.size() && rows.size() < most; ++k) {
+    const Line& line = table.lines[k];
+    if (line.comment) continue;
+    const std::vector<std::string> cells = table.cells(k);
+    const bool whole = cells.size() >= needed;
+    if (k < table.first_row && (!whole || (!is_number(cells[columns->x]) && !is_number(cells[columns->y])))) continue;
+    if (!whole || (cells.size() > columns->most && k >= table.first_row)) {
+      if (cells.empty() && line.text.find('"') == std::string_view::npos) continue;  // separators alone
+      if (cells.empty())
+        found.add("quote", line.number, "has a quotation mark that is not closed");
+      else
+        found.add("count", line.number,
+                  "has " + std::to_string(cells.size()) + (cells.size() == 1 ? " column" : " columns") + ", expected " +
+                      std::to_string(columns->most));
+      continue;
+    }
+    SurveyRow row{line.number, cells[columns->x], cells[columns->y]};
+    for (std::string* cell : {&row.x, &row.y}) {
+      commas = commas || (*separator != ',' && has_decimal_comma(*cell) && is_number(*cell));
+      points = points || (cell->find('.') != std::string::npos && is_number(*cell));
+      *cell = with_point(*cell);
+    }
+    if (commas && points)
+      found.add("decimals", line.number, "mixes decimal points and decimal commas, or has separators of thousands");
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace talus

@@ -1,0 +1,86 @@
+// Values that are allowed but that no soil has: mostly slips of the unit.
+
+#include <algorithm>
+
+#include "case/sections.hpp"
+#include "math/angle.hpp"
+#include "support/text.hpp"
+
+namespace talus {
+namespace {
+
+/// Values of a quantity that were probably meant in another unit.
+struct Slip {
+  double lo, hi;       ///< range of the slip, both included
+  const char* advice;  ///< what was probably meant, and what to type
+};
+
+/// A quantity and what its values usually are.
+struct Usual {
+  const char* key;
+  const char* unit;
+  double lo, hi;  ///< usual range, both included
+  const char* range;
+  std::vector<Slip> slips;
+};
+
+const Usual density{"density_kg_m3",
+                    "kg/m3",
+                    500.0,
+                    5000.0,
+                    "500 to 5000 kg/m3",
+                    {{5.0, 50.0, "a unit weight in kN/m3 is given as unit_weight_kN_m3"},
+                     {0.5, 5.0, "a density in t/m3 or g/cm3 is multiplied by 1000"}}};
+const Usual cohesion{"cohesion_Pa",
+                     "Pa",
+                     50.0,
+                     5e6,
+                     "0, or 50 Pa to 5 MPa",
+                     {{0.0, 50.0, "a cohesion in kPa is given as cohesion_kPa"}}};
+const Usual friction_angle{"friction_angle_deg",
+                           "deg",
+                           2.0,
+                           60.0,
+                           "0, or 2 to 60 deg",
+                           {{0.0, 2.0, "a value in radians, or tan(phi), is converted to degrees"}}};
+const Usual viscosity{"viscosity_Pa_s", "Pa s", 0.0, 1e6, "up to 1e6 Pa s", {}};
+const Usual shear_modulus{"shear_modulus_Pa",
+                          "Pa",
+                          1e4,
+                          1e11,
+                          "10 kPa to 100 GPa",
+                          {{0.0, 1e4, "a modulus in kPa or MPa is multiplied by 1000 or 1e6"}}};
+
+void warn(const Usual& usual, double value, const std::string& section, std::vector<Fault>& warnings) {
+  if (value == 0.0 || (value >= usual.lo && value <= usual.hi)) return;
+  std::string message = to_text(value) + " " + usual.unit + " is unusual for soil (" + usual.range + ")";
+  for (const Slip& slip : usual.slips)
+    if (value >= slip.lo && value <= slip.hi) {
+      message += "; " + std::string(slip.advice);
+      break;
+    }
+  warnings.push_back({section + "/" + usual.key, message});
+}
+
+/// Where a material stands in the case: the default one, or that of the first outline of its kind.
+std::string section_of(const Model& model, int material) {
+  const auto part = std::ranges::find(model.slide, material, &SlidePart::material);
+  return material == 0 ? "/material" : "/slide/outlines/" + std::to_string(part - model.slide.begin()) + "/material";
+}
+
+}  // namespace
+
+void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings) {
+  for (std::size_t k = 0; k < model.materials.size(); ++k) {
+    const Material& m = model.materials[k];
+    const Material& base = model.materials.front();  // a layer that inherits a value is not warned of it again
+    const std::string section = section_of(model, static_cast<int>(k));
+    if (k == 0 || m.rho0 != base.rho0) warn(density, m.rho0, section, warnings);
+    if (k == 0 || m.phi != base.phi) warn(friction_angle, degrees(m.phi), section, warnings);
+    if (k == 0 || m.c != base.c) warn(cohesion, m.c, section, warnings);
+    if (k == 0 || m.eta != base.eta) warn(viscosity, m.eta, section, warnings);
+  }
+  if (model.rheology.G) warn(shear_modulus, *model.rheology.G, "/rheology", warnings);
+}
+
+}  // namespace talus

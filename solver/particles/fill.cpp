@@ -1,0 +1,275 @@
+#include "particles/fill.hpp"
+
+#include <algorithm>
+#include <array>
+#include <boost/geometry.hpp>
+#include <boost/geometry/geometries/point_xy.hpp>
+#include <boost/geometry/geometries/polygon.hpp>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include "particles/geometry.hpp"
+#include "particles/ground.hpp"
+
+namespace talus {
+namespace {
+
+using Outline = std::vector<Vec2>;
+
+/// What is not told from a whole cell, from nothing, or from an equal length; so that rounding decides nothing [dx2,
+/// dx].
+constexpr double negligible = 1e-6;
+
+/// The part of a polygon on one side of a line along an axis, by the method of Sutherland and Hodgman 1974. Where it
+/// falls apart, its pieces stay joined by edges along the line that cancel in sums over the edges.
+/// @param sign  1.0: keep what is beyond `at`; -1.0: keep what is before it
+Outline clip(const Outline& polygon, double Vec2::*axis, double at, double sign) {
+  Outline kept;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
+    const double from = sign * (a.*axis - at), to = sign * (b.*axis - at);
+    if (from >= 0.0) kept.push_back(a);
+    if ((from > 0.0 && to < 0.0) || (from < 0.0 && to > 0.0)) {
+      Vec2 crossing = a + (from / (from - to)) * (b - a);
+      crossing.*axis = at;
+      kept.push_back(crossing);
+    }
+  }
+  return kept;
+}
+
+/// Area and first moment of a polygon walked counter-clockwise.
+struct Moments {
+  double area = 0.0;
+  Vec2 first;
+};
+
+Moments moments(const Outline& polygon) {
+  Moments sum;
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec2 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
+    const double twice = cross(a, b);
+    sum.area += 0.5 * twice;
+    sum.first += (twice / 6.0) * (a + b);
+  }
+  return sum;
+}
+
+/// A lattice cell.
+struct CellIndex {
+  std::int64_t row = 0, column = 0;
+  auto operator<=>(const CellIndex&) const = default;
+};
+
+/// The piece of a cell that lies in an outline. Lengths are in dx, coordinates from the cell's lower left corner.
+struct Piece {
+  CellIndex cell;
+  double area = 1.0;
+  Vec2 centroid{0.5, 0.5};
+  std::array<double, 4> side{1.0, 1.0, 1.0, 1.0};  ///< length shared with the cells right, above, left and below
+};
+
+constexpr std::array<CellIndex, 4> neighbour_cells{{{0, 1}, {1, 0}, {0, -1}, {-1, 0}}};
+
+/// A piece from its polygon in lattice coordinates.
+Piece cut_piece(const Outline& polygon, CellIndex cell) {
+  const Vec2 corner{static_cast<double>(cell.column), static_cast<double>(cell.row)};
+  Piece piece{cell, 0.0, {}, {}};
+  Outline local;
+  for (const Vec2& v : polygon) local.push_back(v - corner);
+  const Moments m = moments(local);
+  if (m.area >= 1.0 - negligible) return {.cell = cell};
+  piece.area = m.area;
+  if (m.area < negligible) return piece;
+  piece.centroid = (1.0 / m.area) * m.first;
+  for (std::size_t k = 0; k < local.size(); ++k) {
+    const Vec2 a = local[k], b = local[(k + 1) % local.size()];
+    if (a.x == 1.0 && b.x == 1.0) piece.side[0] += b.y - a.y;
+    if (a.y == 1.0 && b.y == 1.0) piece.side[1] += a.x - b.x;
+    if (a.x == 0.0 && b.x == 0.0) piece.side[2] += a.y - b.y;
+    if (a.y == 0.0 && b.y == 0.0) piece.side[3] += b.x - a.x;
+  }
+  return piece;
+}
+
+/// Cuts a polygon in lattice coordinates into the cells from `lo` up to, not including, `hi`, by halves.
+void cut_into_cells(const Outline& polygon, CellIndex lo, CellIndex hi, std::vector<Piece>& pieces) {
+  if (polygon.size() < 3) return;
+  const std::int64_t rows = hi.row - lo.row, columns = hi.column - lo.column;
+  if (rows == 1 && columns == 1) {
+    const Piece piece = cut_piece(polygon, lo);
+    if (piece.area >= negligible) pieces.push_back(piece);
+    return;
+  }
+  const bool upright = rows >= columns;
+  const std::int64_t middle = upright ? lo.row + rows / 2 : lo.column + columns / 2;
+  double Vec2::*const axis = upright ? &Vec2::y : &Vec2::x;
+  const auto at = static_cast<double>(middle);
+  cut_into_cells(clip(polygon, axis, at, -1.0), lo, upright ? CellIndex{middle, hi.column} : CellIndex{hi.row, middle},
+                 pieces);
+  cut_into_cells(clip(polygon, axis, at, 1.0), upright ? CellIndex{middle, lo.column} : CellIndex{lo.row, middle}, hi,
+                 pieces);
+}
+
+/// The pieces of one outline, joined until none is smaller than least_cells.
+class Joined {
+ public:
+  explicit Joined(std::vector<Piece> pieces) : pieces_(std::move(pieces)), group_(pieces_.size()) {
+    std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) { return a.cell < b.cell; });
+    std::iota(group_.begin(), group_.end(), std::size_t{0});
+    for (std::size_t k = 0; k < pieces_.size(); ++k) members_.push_back({k});
+    for (std::size_t k = 0; k < pieces_.size(); ++k)
+      while (group_[k] == k && area(k) < least_cells - negligible && join_longest(k)) {
+      }
+  }
+
+  /// One piece for each group: the cell of its first, area and centroid of all.
+  std::vector<Piece> groups() const {
+    std::vector<Piece> out;
+    for (std::size_t k = 0; k < pieces_.size(); ++k) {
+      if (group_[k] != k) continue;
+      if (members_[k].size() == 1) {
+        out.push_back(pieces_[k]);
+        continue;
+      }
+      Piece sum{pieces_[k].cell, area(k), {}, {}};
+      for (const std::size_t j : members_[k]) sum.centroid += (pieces_[j].area / sum.area) * place(j, sum.cell);
+      out.push_back(sum);
+    }
+    return out;
+  }
+
+ private:
+  double area(std::size_t group) const {
+    double sum = 0.0;
+    for (const std::size_t j : members_[group]) sum += pieces_[j].area;
+    return sum;
+  }
+  /// Centroid of a piece from the corner of another cell.
+  Vec2 place(std::size_t j, CellIndex from) const {
+    const CellIndex cell = pieces_[j].cell;
+    return pieces_[j].centroid +
+           Vec2{static_cast<double>(cell.column - from.column), static_cast<double>(cell.row - from.row)};
+  }
+  /// The piece of a cell, or none: pieces_.size().
+  std::size_t find(CellIndex cell) const {
+    const auto at = std::lower_bound(pieces_.begin(), pieces_.end(), cell,
+                                     [](const Piece& piece, CellIndex c) { return piece.cell < c; });
+    return at != pieces_.end() && at->cell == cell ? static_cast<std::size_t>(at - pieces_.begin()) : pieces_.size();
+  }
+  /// Joins a group to the one behind its longest edge. @return whether there is one
+  bool join_longest(std::size_t group) {
+    double longest = negligible;
+    std::size_t to = pieces_.size();
+    for (const std::size_t j : members_[group])
+      for (std::size_t s = 0; s < neighbour_cells.size(); ++s) {
+        const CellIndex step = neighbour_cells[s], cell = pieces_[j].cell;
+        if (pieces_[j].side[s] <= longest + negligible) continue;
+        const std::size_t other = find({cell.row + step.row, cell.column + step.column});
+        if (other == pieces_.size() || group_[other] == group) continue;
+        longest = pieces_[j].side[s];
+        to = group_[other];
+      }
+    if (to == pieces_.size()) return false;
+    // The heavier group keeps its place in the order.
+    for (const std::size_t j : members_[group]) {
+      group_[j] = to;
+      members_[to].push_back(j);
+    }
+    members_[group].clear();
+    return true;
+  }
+
+  std::vector<Piece> pieces_;                      ///< by cell
+  std::vector<std::size_t> group_;                 ///< of each piece: the index of the group's first piece
+  std::vector<std::vector<std::size_t>> members_;  ///< of each group
+};
+
+std::vector<Piece> cut_outline(const std::vector<Vec2>& outline, const Box& box, double dx) {
+  Outline scaled;
+  for (const Vec2& v : outline) scaled.push_back((1.0 / dx) * (v - box.lo));
+  if (moments(scaled).area < 0.0) std::reverse(scaled.begin(), scaled.end());
+  const auto count = [dx](double extent) { return static_cast<std::int64_t>(std::ceil(extent / dx - negligible)) + 1; };
+  std::vector<Piece> pieces;
+  cut_into_cells(scaled, {0, 0}, {count(box.height()), count(box.width())}, pieces);
+  return Joined(std::move(pieces)).groups();
+}
+
+/// The point, or the nearest one found that is `distance` away from the walls.
+Vec2 clear_of_walls(Vec2 x, double distance, const Ground& ground) {
+  constexpr int surfaces = 4;  // in a corner
+  for (int k = 0; k < surfaces; ++k) {
+    const Ground::Nearest near = ground.nearest(x);
+    if (near.past_end || near.distance >= distance) break;
+    x = near.point + distance * near.normal;
+  }
+  return x;
+}
+
+std::vector<SoilPoint> fill_with_cut_cells(std::span<const SlidePart> slide, const Ground& ground, double dx) {
+  const Box box = bounding_box(slide);
+  struct Placed {
+    CellIndex cell;
+    SoilPoint point;
+  };
+  std::vector<Placed> placed;
+  for (const SlidePart& part : slide)
+    for (const Piece& piece : cut_outline(part.outline, box, dx)) {
+      const Vec2 x{box.lo.x + (static_cast<double>(piece.cell.column) + piece.centroid.x) * dx,
+                   box.lo.y + (static_cast<double>(piece.cell.row) + piece.centroid.y) * dx};
+      placed.push_back({piece.cell, {clear_of_walls(x, least_distance * dx, ground), part.material, piece.area}});
+    }
+  std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.cell < b.cell; });
+  std::vector<SoilPoint> points;
+  for (const Placed& p : placed) points.push_back(p.point);
+  return points;
+}
+
+namespace bg = boost::geometry;
+using Point = bg::model::d2::point_xy<double>;
+using Polygon = bg::model::polygon<Point>;
+
+Polygon to_polygon(std::span<const Vec2> outline) {
+  Polygon polygon;
+  for (const Vec2& v : outline) bg::append(polygon.outer(), Point(v.x, v.y));
+  bg::correct(polygon);
+  return polygon;
+}
+
+std::vector<SoilPoint> fill_with_lattice_points(std::span<const SlidePart> slide, const Ground& ground, double dx,
+                                                bool nodes) {
+  const Box box = bounding_box(slide);
+  const double shift = nodes ? 0.0 : 0.5, tolerance = negligible * dx;
+  const auto columns = static_cast<std::int64_t>(std::floor(box.width() / dx + negligible)) + 1;
+  const auto rows = static_cast<std::int64_t>(std::floor(box.height() / dx + negligible)) + 1;
+  std::vector<Polygon> polygons;
+  for (const SlidePart& part : slide) polygons.push_back(to_polygon(part.outline));
+  std::vector<SoilPoint> points;
+  for (std::int64_t row = 0; row < rows; ++row)
+    for (std::int64_t column = 0; column < columns; ++column) {
+      const Vec2 x{box.lo.x + (static_cast<double>(column) + shift) * dx,
+                   box.lo.y + (static_cast<double>(row) + shift) * dx};
+      // Lattice nodes that fall on the far edges would be lost to rounding: test a point pulled in by a hair.
+      const Vec2 probe = nodes ? Vec2{std::clamp(x.x, box.lo.x + tolerance, box.hi.x - tolerance),
+                                      std::clamp(x.y, box.lo.y + tolerance, box.hi.y - tolerance)}
+                               : x;
+      for (std::size_t k = 0; k < slide.size(); ++k) {
+        if (!bg::covered_by(Point(probe.x, probe.y), polygons[k])) continue;
+        if (ground.nearest(x).distance >= 0.5 * dx - tolerance) points.push_back({x, slide[k].material});
+        break;
+      }
+    }
+  return points;
+}
+
+}  // namespace
+
+std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<const Polyline> walls, double dx,
+                                  Placement placement) {
+  const Ground ground({walls.begin(), walls.end()});
+  if (placement == Placement::cells) return fill_with_cut_cells(slide, ground, dx);
+  return fill_with_lattice_points(slide, ground, dx, placement == Placement::nodes);
+}
+
+}  // namespace talus

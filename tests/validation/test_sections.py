@@ -1,0 +1,99 @@
+"""test_sections.py TALUS [--fine]: every section of data/sections at two spacings, the stated one and twice that; --fine: half of it and the stated one.
+
+Each run must end at rest with a sound verdict and no particle in the ground; the two fronts must agree.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import sys
+import tempfile
+
+import numpy as np
+
+PENETRATION = 0.5  # depth below the bed, in spacings, that counts as inside the ground
+FRONT_99, FARTHEST = 3.0, 4.0  # difference between the fronts of 99 % of the mass and of the farthest particle, in coarse spacings
+MOVED = 2.0  # displacement of the centre of mass, in coarse spacings, below which a section shows nothing
+
+
+def bed_of(path):
+    """(vertices, 2) [m]: the bed as the case gives it."""
+    return np.loadtxt(path.parent / json.loads(path.read_text())["terrain"]["bed_csv"], delimiter=",", skiprows=1)
+
+
+def edges_above(bed, points):
+    """How many edges of the bed lie above each point; an odd number means that the point is in the ground."""
+    start, end = bed[:-1, None], bed[1:, None]
+    spans = (start[..., 0] <= points[:, 0]) != (end[..., 0] <= points[:, 0])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        height = start[..., 1] + (points[:, 0] - start[..., 0]) * (end[..., 1] - start[..., 1]) / (end[..., 0] - start[..., 0])
+    return np.count_nonzero(spans & (height > points[:, 1]), axis=0)
+
+
+def distance(bed, point):
+    """Distance from a point to the bed [m]."""
+    start, along = bed[:-1], np.diff(bed, axis=0)
+    share = np.clip(((point - start) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)
+    return float(np.linalg.norm(start + share[:, None] * along - point, axis=1).min())
+
+
+def penetration(bed, points):
+    """Greatest depth of a particle in the ground [m]."""
+    inside = points[edges_above(bed, points) % 2 == 1]
+    return max((distance(bed, point) for point in inside), default=0.0)
+
+
+def run(path, spacing, work):
+    """result.json of a run and what its first and last snapshots say; chainages [m] grow in the direction of sliding."""
+    import talus_runs
+    from snapshots import Snapshots
+
+    directory = work / f"{path.stem}-{spacing:g}"
+    result = talus_runs.run(path, directory, {"particle_spacing_m": spacing}, threads=1)
+    snapshots = Snapshots(directory)
+    first, last = snapshots.position(0), snapshots.position(-1)
+    moved = last[:, 0].mean() - first[:, 0].mean()
+    along = np.sign(moved) * last[:, 0]
+    return {"result": result, "spacing": spacing, "depth": penetration(bed_of(path), last), "moved": abs(moved), "front_99": np.quantile(along, 0.99), "farthest": along.max()}
+
+
+def faults_of_run(found):
+    result, spacing = found["result"], found["spacing"]
+    checks = {"not at rest": not result["at_rest"],
+              f"verdict {result.get('quality')}": result.get("quality", {"verdict": "sound"})["verdict"] != "sound",
+              f"penetrated {result['penetrated']}": result["penetrated"] != 0,
+              f"a particle {found['depth']:.3g} m in the ground": found["depth"] > PENETRATION * spacing}
+    return [f"{spacing:g} m: {what}" for what, failed in checks.items() if failed]
+
+
+def faults_of_pair(coarse, fine):
+    limits = {"front_99": FRONT_99, "farthest": FARTHEST}
+    differences = {name: abs(coarse[name] - fine[name]) / coarse["spacing"] for name in limits}
+    faults = [f"{name} differs by {difference:.2f} coarse spacings" for name, difference in differences.items() if difference > limits[name]]
+    if fine["moved"] < MOVED * coarse["spacing"]:
+        faults.append(f"the centre of mass moved by {fine['moved']:.3g} m only")
+    return faults
+
+
+def faults_of_section(path, work, fine):
+    spacing = json.loads(path.read_text())["particle_spacing_m"]
+    pair = [run(path, dx, work) for dx in ((spacing, spacing / 2) if fine else (2 * spacing, spacing))]
+    print(f"{path.stem}: " + ", ".join(f"{found['result']['particles']['soil']} particles, front {found['front_99']:.2f} m" for found in pair), flush=True)
+    return [f"{path.stem}: {fault}" for fault in [*faults_of_run(pair[0]), *faults_of_run(pair[1]), *faults_of_pair(*pair)]]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("talus")
+    parser.add_argument("--fine", action="store_true")
+    arguments = parser.parse_args()
+    os.environ["TALUS"] = arguments.talus
+    paths = sorted((pathlib.Path(__file__).resolve().parent / "data" / "sections").glob("*.json"))
+    with tempfile.TemporaryDirectory() as directory:
+        faults = [fault for path in paths for fault in faults_of_section(path, pathlib.Path(directory), arguments.fine)]
+    if faults or not paths:
+        sys.exit("\n".join(faults) or "no section found")
+
+
+main()
