@@ -5,6 +5,7 @@
 
 #include "case/sections.hpp"
 #include "math/angle.hpp"
+#include "simulation/checks.hpp"
 
 namespace talus {
 namespace {

@@ -12,6 +12,9 @@
 
 namespace talus {
 
+/// The largest Courant number at which an integrator is stable [-]; measured, see README.md.
+constexpr double stable_cfl(Integrator integrator) { return integrator == Integrator::leapfrog ? 0.4 : 0.8; }
+
 /// What the checks look at. The defaults are those of a run without fault; what is unset is not checked.
 struct RunFacts {
   EnergyBudget energy = {};                       ///< at the end
