@@ -31,7 +31,9 @@ class Flow {
 
   /// Moves the active soil on by dt [s] and writes the stress extrapolated to the walls.
   /// The reach of `cells` covers 2h around every particle's position in the middle of the step.
-  virtual StepExtrema step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt) = 0;
+  /// @param powers  where not null: filled with the powers in the middle of the step
+  virtual StepExtrema step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt,
+                           Powers* powers = nullptr) = 0;
 
   /// One pass of the Shepard filter over the densities of the active soil.
   void filter_density(Soil& soil, const WallParticles& walls, const ParticleCells& cells) {

@@ -92,12 +92,13 @@ PlainFlow::PlainFlow(FlowConstants constants, Soil& soil) : Flow(std::move(const
   }
 }
 
-StepExtrema PlainFlow::step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt) {
+StepExtrema PlainFlow::step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt, Powers* powers) {
   Stopwatch watch;
   double evaluating = 0.0;
+  int left = evaluations_per_step(constants().numerics.integrator);
   const Evaluate evaluate = [&](Soil& s) {
     watch.lap(times_.update);
-    evaluate_plain(constants(), s, walls, cells);
+    evaluate_plain(constants(), s, walls, cells, --left == 0 && powers ? &powers_ : nullptr);
     watch.lap(evaluating);
   };
   PlainState state(soil, start_, evaluate);
@@ -105,6 +106,7 @@ StepExtrema PlainFlow::step(Soil& soil, WallParticles& walls, const ParticleCell
   const StepExtrema extrema = find_extrema(soil, start_);
   watch.lap(times_.update);
   times_.gradient += evaluating;
+  if (powers) *powers = powers_.total(soil.n_active);
   return extrema;
 }
 

@@ -34,7 +34,8 @@ class PlainFlow final : public Flow {
 
   const char* name() const override { return "plain"; }
   const char* simd() const override { return "none"; }
-  StepExtrema step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt) override;
+  StepExtrema step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt,
+                   Powers* powers = nullptr) override;
 
   /// Every search pays for the distance, since there are no lists.
   double resort_distance() const override { return 0.1; }
@@ -47,6 +48,7 @@ class PlainFlow final : public Flow {
 
  private:
   Soil start_;
+  ParticlePowers<double> powers_;
 };
 
 }  // namespace talus

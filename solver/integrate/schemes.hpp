@@ -7,6 +7,8 @@
 //                            taken off y as well.
 //   move(dt, velocity)       y <- y + dt f(y'), positions with the velocity that `velocity` names.
 
+// The last evaluation of a step is at its middle, ahead = dt/2: that is where powers are measured.
+
 #include "sph/numerics.hpp"
 
 namespace talus {

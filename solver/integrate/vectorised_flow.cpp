@@ -39,6 +39,7 @@ std::optional<double> common_value(std::span<const double> values) {
 
 VectorisedFlow::VectorisedFlow(FlowConstants constants, const Soil& soil) : Flow(std::move(constants)) {
   flow_.soil.resize(soil.size());
+  flow_.powers.resize(soil.size());
   for (std::size_t i = 0; i < soil.size(); ++i) {
     float* stress = flow_.soil.stress.data() + 4 * i;
     stress[3] = static_cast<float>(initial_pressure(this->constants(), soil, i));
@@ -177,12 +178,13 @@ void VectorisedFlow::pack_active(const Soil& soil, double ahead) {
 
 /// Inside a parallel region.
 void VectorisedFlow::evaluate_in_region(Soil& soil, WallParticles& walls, double ahead, bool commit, bool pack,
-                                        Stopwatch& watch) {
+                                        bool measure, Stopwatch& watch) {
   if (pack) pack_active(soil, ahead);
 #pragma omp master
   watch.lap(times_.update);
-  for_clusters_with_stealing(&ThreadRange::stress, &ThreadRange::momentum,
-                             [&](Range range) { stress_pass(flow_, constants(), soil, ahead, commit, range); });
+  for_clusters_with_stealing(&ThreadRange::stress, &ThreadRange::momentum, [&](Range range) {
+    stress_pass(flow_, constants(), soil, ahead, commit, measure, range);
+  });
 #pragma omp barrier
 #pragma omp master
   watch.lap(times_.gradient);
@@ -191,7 +193,7 @@ void VectorisedFlow::evaluate_in_region(Soil& soil, WallParticles& walls, double
 #pragma omp master
   watch.lap(times_.walls);
   for_clusters_with_stealing(&ThreadRange::momentum, &ThreadRange::stress,
-                             [&](Range range) { momentum_pass(flow_, constants(), range); });
+                             [&](Range range) { momentum_pass(flow_, constants(), measure, range); });
 #pragma omp barrier
 #pragma omp master
   watch.lap(times_.momentum);
@@ -203,7 +205,7 @@ void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bo
   const bool pack = ahead != 0.0 || !present_is_packed_;
   present_is_packed_ = ahead == 0.0;
 #pragma omp parallel
-  evaluate_in_region(soil, walls, ahead, commit, pack, watch);
+  evaluate_in_region(soil, walls, ahead, commit, pack, false, watch);
 }
 
 /// What one thread does of a step: the back end of the schemes, inside a parallel region.
@@ -212,9 +214,11 @@ struct VectorisedFlow::ThreadStep {
   Soil& soil;
   WallParticles& walls;
   Stopwatch& watch;
+  bool measure;  ///< the powers in the middle of the step
 
   void evaluate(double ahead, bool commit) {
-    flow.evaluate_in_region(soil, walls, ahead, commit, ahead != 0.0 || !flow.present_is_packed_, watch);
+    flow.evaluate_in_region(soil, walls, ahead, commit, ahead != 0.0 || !flow.present_is_packed_,
+                            measure && ahead != 0.0, watch);
   }
   StepExtrema move(double dt, PositionVelocity velocity) {
     StepExtrema extrema;
@@ -226,16 +230,17 @@ struct VectorisedFlow::ThreadStep {
   }
 };
 
-StepExtrema VectorisedFlow::step(Soil& soil, WallParticles& walls, const ParticleCells&, double dt) {
+StepExtrema VectorisedFlow::step(Soil& soil, WallParticles& walls, const ParticleCells&, double dt, Powers* powers) {
   Stopwatch watch;
   partition_work();
   StepExtrema extrema;
 #pragma omp declare reduction(merge:StepExtrema : omp_out = omp_out.merge(omp_in))
 #pragma omp parallel reduction(merge : extrema)
   {
-    ThreadStep thread{*this, soil, walls, watch};
+    ThreadStep thread{*this, soil, walls, watch, powers != nullptr};
     extrema = advance(constants().numerics.integrator, thread, dt);
   }
+  if (powers) *powers = flow_.powers.total(soil.n_active);
   watch.lap(times_.update);
   present_is_packed_ = true;
   return extrema;

@@ -20,7 +20,8 @@ class VectorisedFlow final : public Flow {
   const char* name() const override { return "vectorised"; }
   const char* simd() const override { return pair_loops_target(); }
   /// One parallel region a step. Does not need the cells: it has lists.
-  StepExtrema step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt) override;
+  StepExtrema step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt,
+                   Powers* powers = nullptr) override;
 
   double resort_distance() const override { return 0.3; }
   void rebuild_neighbour_lists(const Soil& soil, const WallParticles& walls, const ParticleCells& cells,
@@ -52,7 +53,8 @@ class VectorisedFlow final : public Flow {
   void for_clusters_with_stealing(std::size_t ThreadRange::*next, std::size_t ThreadRange::*other, F&& f);
   template <class F>
   void for_local_particles(std::size_t active, F&& f);
-  void evaluate_in_region(Soil& soil, WallParticles& walls, double ahead, bool commit, bool pack, Stopwatch& watch);
+  void evaluate_in_region(Soil& soil, WallParticles& walls, double ahead, bool commit, bool pack, bool measure,
+                          Stopwatch& watch);
 
   PackedFlow flow_;
   std::vector<std::size_t> work_ = {0};  ///< neighbours to sum over in all batches before each one

@@ -13,17 +13,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view header = "time_s,step,front_m,centre_of_mass_x_m,kinetic_energy_J_per_m,max_speed_m_s";
+constexpr std::size_t terms = std::size(energy_terms), columns = 6 + terms + 1;
+
+const std::string& header() {
+  static const std::string text = [] {
+    std::string names = "time_s,step,front_m,centre_of_mass_x_m,kinetic_energy_J_per_m,max_speed_m_s";
+    for (const EnergyTerm& term : energy_terms) names += std::string(",") + term.key;
+    return names + ",created_J_m";
+  }();
+  return text;
+}
 
 bool parse(const std::vector<std::string>& fields, HistoryRow& row) {
-  if (fields.size() != 6) return false;
+  if (fields.size() != columns) return false;
   const auto number = [&](std::size_t i, auto& value) {
     const char* end = fields[i].data() + fields[i].size();
     const auto [stop, error] = std::from_chars(fields[i].data(), end, value);
     return error == std::errc() && stop == end;
   };
-  return number(0, row.time) && number(1, row.step) && number(2, row.front) && number(3, row.centre_of_mass_x) &&
-         number(4, row.kinetic_energy) && number(5, row.max_speed);
+  double created = 0.0;  // follows from the others
+  bool good = number(0, row.time) && number(1, row.step) && number(2, row.front) && number(3, row.centre_of_mass_x) &&
+              number(4, row.kinetic_energy) && number(5, row.max_speed) && number(columns - 1, created);
+  for (std::size_t i = 0; i < terms; ++i) good = good && number(6 + i, row.energy.*energy_terms[i].value);
+  return good;
+}
+
+std::string line_of(const HistoryRow& row) {
+  std::string line = to_text(row.time) + "," + std::to_string(row.step) + "," + to_text(row.front) + "," +
+                     to_text(row.centre_of_mass_x) + "," + to_text(row.kinetic_energy) + "," + to_text(row.max_speed);
+  for (const EnergyTerm& term : energy_terms) line += "," + to_text(row.energy.*term.value);
+  return line + "," + to_text(row.energy.created()) + "\n";
 }
 
 [[noreturn]] void bad_line(const fs::path& path, std::size_t line, const std::string& what) {
@@ -33,10 +52,8 @@ bool parse(const std::vector<std::string>& fields, HistoryRow& row) {
 }  // namespace
 
 void write_history(const fs::path& path, std::span<const HistoryRow> rows) {
-  std::string text = std::string(header) + "\n";
-  for (const HistoryRow& row : rows)
-    text += to_text(row.time) + "," + std::to_string(row.step) + "," + to_text(row.front) + "," +
-            to_text(row.centre_of_mass_x) + "," + to_text(row.kinetic_energy) + "," + to_text(row.max_speed) + "\n";
+  std::string text = header() + "\n";
+  for (const HistoryRow& row : rows) text += line_of(row);
   write_file_atomically(path, text);
 }
 
@@ -45,11 +62,11 @@ std::vector<HistoryRow> read_history(const fs::path& path) {
   const std::string content = read_file(path, max_bytes);
   CsvRows lines(content);
   if (!lines.next()) bad_line(path, 1, "the header is missing");
-  if (lines.text() != header) bad_line(path, 1, "is not the header of a history (" + std::string(header) + ")");
+  if (lines.text() != header()) bad_line(path, 1, "is not the header of a history (" + header() + ")");
   std::vector<HistoryRow> rows;
   while (lines.next())
     if (!parse(lines.fields(), rows.emplace_back()))
-      bad_line(path, static_cast<std::size_t>(lines.line()), "is not six numbers");
+      bad_line(path, static_cast<std::size_t>(lines.line()), "is not " + std::to_string(columns) + " numbers");
   if (!content.ends_with('\n')) bad_line(path, static_cast<std::size_t>(lines.line()), "the line does not end");
   return rows;
 }

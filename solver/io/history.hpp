@@ -10,7 +10,7 @@
 namespace talus {
 
 /// Writes all rows atomically: columns time_s, step, front_m, centre_of_mass_x_m, kinetic_energy_J_per_m,
-/// max_speed_m_s.
+/// max_speed_m_s; then energy_terms and created_J_m.
 /// @throws IoError naming the path; an older file is then untouched
 void write_history(const std::filesystem::path& path, std::span<const HistoryRow> rows);
 

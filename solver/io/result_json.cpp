@@ -55,14 +55,16 @@ class ObjectIo {
   void text(const char* key, std::string& value) { transfer(key, value, &Json::is_string, "a text"); }
   /// NaN where an earlier version did not write the key.
   void number_or_nan(const char* key, double& value) {
-    if (!reading_ || node_.contains(key))
+    if (has(key))
       number(key, value);
     else
       value = std::numeric_limits<double>::quiet_NaN();
   }
+  /// Whether a key is to be transferred that earlier versions did not write.
+  bool has(const char* key) const { return !reading_ || node_.contains(key); }
   /// For a key that earlier versions did not write; empty without it.
   void text_or_empty(const char* key, std::string& value) {
-    if (!reading_ || node_.contains(key))
+    if (has(key))
       text(key, value);
     else
       value.clear();
@@ -86,7 +88,7 @@ class ObjectIo {
     if (!known) fail(key, "sound, doubtful, invalid or not_assessed");
     value = *known;
   }
-  bool lacks(const char* key) const { return reading_ && !node_.contains(key); }
+
   /// A list of objects; each(object, element) transfers one.
   template <class T, class Each>
   void list(const char* key, std::vector<T>& elements, const Each& each) {
@@ -156,12 +158,21 @@ void transfer_warning(ObjectIo node, Fault& warning) {
 
 /// Results of version 0.1.0 have neither quality nor warnings.
 void transfer_quality(ObjectIo& root, RunResult& result) {
-  if (!root.lacks("quality")) {
+  if (root.has("quality")) {
     ObjectIo quality = root.object("quality");
     quality.verdict("verdict", result.quality.verdict);
     quality.list("reasons", result.quality.reasons, transfer_reason);
   }
-  if (!root.lacks("warnings")) root.list("warnings", result.warnings, transfer_warning);
+  if (root.has("warnings")) root.list("warnings", result.warnings, transfer_warning);
+}
+
+/// What follows from the terms is written for readers.
+void transfer_energy(ObjectIo energy, EnergyBudget& budget) {
+  for (const EnergyTerm& term : energy_terms) energy.number(term.key, budget.*term.value);
+  double created = budget.created();
+  std::optional<double> share = budget.created_share();
+  energy.number("created_J_m", created);
+  energy.optional("created_share", share);
 }
 
 /// Every member of the document, in its order.
@@ -200,6 +211,7 @@ void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
   field.number("mean_friction_angle_deg", mean_phi_deg, 0.0);
   field.integer("terms", result.field.terms);
   result.field.mean_phi = radians(mean_phi_deg);
+  if (root.has("energy")) transfer_energy(root.object("energy"), result.energy);
 
   ObjectIo provenance = root.object("provenance");
   provenance.text("version", from.version);

@@ -22,6 +22,14 @@ struct EquationOfState {
 
   /// Density of pressure p > -B [Pa]; the pressure of a density is in constitutive_models-inl.hpp.
   double density(double p) const { return rho0 * std::pow(1.0 + p / B, 1.0 / eos_exponent); }
+
+  /// Elastic energy of a unit of mass, the integral of p/rho^2 drho from rho0 [J/kg]:
+  /// B/rho0 ((s^6 - 1)/6 + 1/s - 1), s = rho/rho0.
+  double energy(double rho) const {
+    static_assert(eos_exponent == 7.0);
+    const double s = rho / rho0, s3 = s * s * s;
+    return B / rho0 * ((s3 * s3 - 1.0) / 6.0 + 1.0 / s - 1.0);
+  }
 };
 
 }  // namespace talus

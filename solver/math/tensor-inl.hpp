@@ -78,11 +78,15 @@ HWY_INLINE Deviator<Real> deviatoric_strain_rate(Gradient<Real> L) {
   return {fnma(third, tr, L.xx), fnma(third, tr, L.yy), Real(0.5) * (L.xy + L.yx)};
 }
 
+/// a:b over all nine components.
+template <class Real>
+HWY_INLINE Real double_dot(Deviator<Real> a, Deviator<Real> b) {
+  return fma(a.xx, b.xx, fma(a.yy, b.yy, fma(a.xx + a.yy, b.xx + b.yy, Real(2.0) * (a.xy * b.xy))));
+}
 /// d:d over all nine components.
 template <class Real>
 HWY_INLINE Real double_dot(Deviator<Real> d) {
-  const Real zz = d.xx + d.yy;
-  return fma(d.xx, d.xx, fma(d.yy, d.yy, fma(zz, zz, Real(2.0) * (d.xy * d.xy))));
+  return double_dot(d, d);
 }
 /// sqrt(t:t/2): the shear stress of simple shear.
 template <class Real>

@@ -45,6 +45,8 @@ CheckpointState Simulation::state() const {
                         stored(rest_rule_.slow_since()),
                         stored(neighbours_.moved_since_sort()),
                         peak_density_rise_};
+  s.reals["energy"] = energy_account_.state();
+  s.reals["energy"].push_back(contact_.taken());
   s.integers["material"].assign(soil_.material.begin(), soil_.material.end());
   s.integers["id"].assign(soil_.id.begin(), soil_.id.end());
   s.integers["penetrated"].assign(contact_.lost_ids().begin(), contact_.lost_ids().end());
@@ -77,7 +79,10 @@ void Simulation::restore(const CheckpointState& state) {
     soil_.id[i] = static_cast<std::int32_t>(id[i]);
   }
   const auto& penetrated = array_of(state.integers, "penetrated", n);
-  contact_.restore({penetrated.begin(), penetrated.end()});
+  std::vector<double> energy = array_of(state.reals, "energy", energy_account_.state().size() + 1);
+  contact_.restore({penetrated.begin(), penetrated.end()}, energy.back());
+  energy.pop_back();
+  energy_account_.restore(energy);
 
   const auto& counters = array_of(state.integers, "counters", 3);
   if (counters[0] < 0 || counters[0] > static_cast<std::int64_t>(n)) refuse("more active particles than there are");

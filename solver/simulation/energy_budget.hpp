@@ -1,24 +1,26 @@
 #pragma once
-// The energy of a run: what is stored, and where the work of gravity went.
+// The energy of a run: what is stored, and where the work of gravity went. Formulas: README.md.
+
+#include <optional>
 
 namespace talus {
 
-/// Energies per metre of width [J/m] at one instant. Stored ones are states; the others are sums since the start of
-/// the run, positive where energy leaves the soil. Gravity's work is initial minus present potential energy.
+/// Energies per metre of width [J/m] at one instant. Stored ones are states of the soil that takes part; the others are
+/// sums since the start of the run, positive where energy leaves the soil.
 struct EnergyBudget {
   // Stored in the soil.
   double kinetic = 0.0;
-  double potential = 0.0;    ///< sum of -m g.x, less its value at the start
+  double potential = 0.0;    ///< sum of -m g.x over all soil, less its value at the start
   double compression = 0.0;  ///< elastic, of the volume
   double distortion = 0.0;   ///< elastic, of the deviatoric stress
   // Lost since the start.
-  double friction = 0.0;              ///< plastic work of the yield stress
-  double viscosity = 0.0;             ///< work of the viscous stress
+  double friction = 0.0;   ///< work of the yield stress: that of the deviatoric stress not stored, not viscous
+  double viscosity = 0.0;  ///< work of the viscous stress
   double artificial_viscosity = 0.0;  ///< work of Monaghan's term
-  double density_diffusion = 0.0;     ///< work of delta-SPH and of the density filter
+  double density_diffusion = 0.0;     ///< work of delta-SPH, the density filter and the mass form of continuity
   double boundaries = 0.0;            ///< work done on the wall particles
   double contact = 0.0;               ///< taken where single particles meet the ground
-  double departed = 0.0;              ///< carried away through an open end, all stored energies
+  double departed = 0.0;              ///< kinetic and elastic energy carried away through an open end
   double stored_at_start = 0.0;       ///< of the four stored ones, at time 0
 
   double stored() const { return kinetic + potential + compression + distortion; }
@@ -27,6 +29,35 @@ struct EnergyBudget {
   }
   /// Energy that no term explains; positive: made out of nothing.
   double created() const { return stored() + lost() - stored_at_start; }
+  double gravity_work() const { return -potential; }
+  /// created() over gravity_work() [-]; unset where gravity has done no work.
+  std::optional<double> created_share() const {
+    return gravity_work() > 0.0 ? std::optional(created() / gravity_work()) : std::nullopt;
+  }
+
+  bool operator==(const EnergyBudget&) const = default;
+};
+
+/// A term as files and figures name it.
+struct EnergyTerm {
+  const char* key;    ///< column of history.csv, member of result.json
+  const char* label;  ///< in figures
+  double EnergyBudget::*value;
+};
+
+inline constexpr EnergyTerm energy_terms[] = {
+    {"kinetic_J_m", "kinetic", &EnergyBudget::kinetic},
+    {"potential_J_m", "potential", &EnergyBudget::potential},
+    {"compression_J_m", "compression", &EnergyBudget::compression},
+    {"distortion_J_m", "distortion", &EnergyBudget::distortion},
+    {"friction_J_m", "friction", &EnergyBudget::friction},
+    {"viscosity_J_m", "viscosity", &EnergyBudget::viscosity},
+    {"artificial_viscosity_J_m", "artificial viscosity", &EnergyBudget::artificial_viscosity},
+    {"density_diffusion_J_m", "density diffusion", &EnergyBudget::density_diffusion},
+    {"boundaries_J_m", "boundaries", &EnergyBudget::boundaries},
+    {"contact_J_m", "ground contact", &EnergyBudget::contact},
+    {"departed_J_m", "departed", &EnergyBudget::departed},
+    {"stored_at_start_J_m", "stored at the start", &EnergyBudget::stored_at_start},
 };
 
 }  // namespace talus

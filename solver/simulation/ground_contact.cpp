@@ -6,27 +6,51 @@
 
 namespace talus {
 
-GroundContact::GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx,
+namespace {
+constexpr std::size_t group = 512;  ///< particles whose actions are summed up in their order, by one thread
+}
+
+GroundContact::GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx, Vec2 g,
                              std::size_t particles)
-    : ground_(std::move(lines)), friction_(std::move(friction)), dx_(dx), next_(particles, 0.0f), lost_(particles, 0) {}
+    : ground_(std::move(lines)),
+      friction_(std::move(friction)),
+      dx_(dx),
+      g_(g),
+      next_(particles, 0.0f),
+      lost_(particles, 0),
+      actions_((particles + group - 1) / group) {}
 
 double GroundContact::act(Soil& soil, double displacement) {
   travelled_ += 1.0001 * displacement;  // found in single precision
+#pragma omp parallel for schedule(static)
+  for (std::size_t k = 0; k < actions_.size(); ++k)
+    actions_[k] = act_on_some(soil, k * group, std::min((k + 1) * group, soil.n_active));
   double farthest = 0.0;
-#pragma omp parallel for schedule(static, 512) reduction(max : farthest)
-  for (std::size_t i = 0; i < soil.n_active; ++i)
-    if (travelled_ >= static_cast<double>(next_[static_cast<std::size_t>(soil.id[i])]))
-      farthest = std::max(farthest, act_on(soil, i));
+  for (const Action& action : actions_) {
+    farthest = std::max(farthest, action.put_back);
+    taken_ += action.taken;
+  }
   travelled_ += 2.0 * farthest;  // what was put back may be nearer to other ground
   return farthest;
 }
 
-/// Acts on one particle. @return the distance that it was put back [m]
-double GroundContact::act_on(Soil& soil, std::size_t i) {
+/// Acts on the particles [begin, end) that may be in reach.
+GroundContact::Action GroundContact::act_on_some(Soil& soil, std::size_t begin, std::size_t end) {
+  Action all;
+  for (std::size_t i = begin; i < end; ++i) {
+    if (travelled_ < static_cast<double>(next_[static_cast<std::size_t>(soil.id[i])])) continue;
+    const Action one = act_on(soil, i);
+    all.put_back = std::max(all.put_back, one.put_back);
+    all.taken += one.taken;
+  }
+  return all;
+}
+
+GroundContact::Action GroundContact::act_on(Soil& soil, std::size_t i) {
   constexpr int surfaces = 4;        // a particle in a corner touches several
   constexpr double rounding = 1e-9;  // of positions that were put back to the reach [dx]
   const auto id = static_cast<std::size_t>(soil.id[i]);
-  const Vec2 start = soil.position(i);
+  const Vec2 start = soil.position(i), velocity = soil.velocity(i);
   for (int k = 0; k < surfaces; ++k) {
     const Vec2 x = soil.position(i);
     const Ground::Nearest near = ground_.nearest(x);
@@ -48,7 +72,8 @@ double GroundContact::act_on(Soil& soil, std::size_t i) {
     soil.y[i] = back.y;
     slow_down(soil, i, normal, friction_[near.line]);
   }
-  return norm(soil.position(i) - start);
+  const Vec2 moved = soil.position(i) - start;
+  return {norm(moved), soil.m[i] * (0.5 * (norm2(velocity) - norm2(soil.velocity(i))) + dot(g_, moved))};
 }
 
 void GroundContact::slow_down(Soil& soil, std::size_t i, Vec2 normal, const WallFriction& wall) const {
@@ -65,9 +90,10 @@ void GroundContact::slow_down(Soil& soil, std::size_t i, Vec2 normal, const Wall
 
 std::int64_t GroundContact::lost() const { return std::accumulate(lost_.begin(), lost_.end(), std::int64_t{0}); }
 
-void GroundContact::restore(std::vector<std::uint8_t> lost) {
+void GroundContact::restore(std::vector<std::uint8_t> lost, double taken) {
   lost_ = std::move(lost);
   std::ranges::fill(next_, 0.0f);
+  taken_ = taken;
 }
 
 }  // namespace talus

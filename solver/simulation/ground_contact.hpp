@@ -28,7 +28,9 @@ class GroundContact {
   /// @param lines     of the boundaries, at least one
   /// @param friction  of each boundary
   /// @param dx        particle spacing [m]
-  GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx, std::size_t particles);
+  /// @param g         gravity [m/s2]
+  GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx, Vec2 g,
+                std::size_t particles);
 
   /// To be called after every step.
   /// @param displacement  of the particle that moved the farthest since the last call [m]
@@ -39,18 +41,29 @@ class GroundContact {
   std::int64_t lost() const;
   /// By id: 1 for those; for checkpoints.
   const std::vector<std::uint8_t>& lost_ids() const { return lost_; }
-  void restore(std::vector<std::uint8_t> lost);
+  /// Kinetic and potential energy that the contact has taken so far [J/m].
+  double taken() const { return taken_; }
+  void restore(std::vector<std::uint8_t> lost, double taken);
 
  private:
-  double act_on(Soil& soil, std::size_t i);
+  /// What was done to one particle or to several.
+  struct Action {
+    double put_back = 0.0;  ///< largest distance [m]
+    double taken = 0.0;     ///< kinetic and potential energy [J/m]
+  };
+  Action act_on_some(Soil& soil, std::size_t begin, std::size_t end);
+  Action act_on(Soil& soil, std::size_t i);
   void slow_down(Soil& soil, std::size_t i, Vec2 normal, const WallFriction& wall) const;
 
   Ground ground_;
   std::vector<WallFriction> friction_;
   double dx_;
+  Vec2 g_;
   double travelled_ = 0.0;   ///< sum of the displacements so far [m]
   std::vector<float> next_;  ///< by id: value of travelled_ before which the particle cannot be in reach [m]
   std::vector<std::uint8_t> lost_;
+  std::vector<Action> actions_;  ///< of the last call, by group of particles
+  double taken_ = 0.0;
 };
 
 }  // namespace talus

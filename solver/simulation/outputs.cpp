@@ -49,7 +49,12 @@ Frame Simulation::frame() const {
 
 HistoryRow Simulation::history_row() const {
   const double left = model_.terrain.left_boundary;
-  return {time_, steps_, farthest(soil_) - left, centre_of_mass(soil_).x - left, kinetic_energy(soil_), max_speed_};
+  return {time_,      steps_,  farthest(soil_) - left, centre_of_mass(soil_).x - left, kinetic_energy(soil_),
+          max_speed_, energy()};
+}
+
+EnergyBudget Simulation::energy() const {
+  return energy_account_.budget(constants(), soil_, starts_, time_, contact_.taken());
 }
 
 /// Largest rho/rho0 - 1 now.
@@ -132,6 +137,7 @@ RunResult Simulation::result() const {
   r.digest = digest(soil_);
   r.backend = backend();
   r.simd = simd();
+  r.energy = energy();
   return r;
 }
 

@@ -60,8 +60,9 @@ struct HistoryRow {
   std::int64_t step = 0;
   double front = 0.0;             ///< farthest soil particle from the left boundary [m]
   double centre_of_mass_x = 0.0;  ///< [m]
-  double kinetic_energy = 0.0;    ///< [J/m]
+  double kinetic_energy = 0.0;    ///< of all soil, also that which has left [J/m]
   double max_speed = 0.0;         ///< [m/s]
+  EnergyBudget energy;
 };
 
 }  // namespace talus

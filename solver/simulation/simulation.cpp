@@ -31,7 +31,8 @@ Simulation::Simulation(const Model& model, const ParticlePlan& plan, const SoilP
       neighbours_(walls_, constants().h, model.dx),
       starts_(plan.soil, bounding_box(model.slide)),
       contact_(wall_lines(model.boundaries, model.dx, model.placement), wall_friction(model.boundaries), model.dx,
-               plan.soil.size()),
+               model.g, plan.soil.size()),
+      energy_account_(constants(), soil_),
       rest_rule_(model.time.stop_at_rest),
       bounds_(step_bounds(model, constants())),
       max_acceleration_(norm(model.g)) {}
@@ -40,7 +41,7 @@ void Simulation::step(double until) {
   const double dt = choose_step(until);
   neighbours_.prepare(soil_, walls_, *flow_, dt, max_speed_);
   filter_density_if_due();
-  StepExtrema extrema = flow_->step(soil_, walls_, neighbours_.cells(), dt);
+  StepExtrema extrema = flow_step(dt);
 
   Stopwatch watch;
   time_ = until - time_ <= dt ? until : time_ + dt;
@@ -60,6 +61,15 @@ void Simulation::step(double until) {
   watch.lap(times_.update);
 }
 
+/// The flow of one step, whose powers are measured when they are due.
+StepExtrema Simulation::flow_step(double dt) {
+  if (!energy_account_.due(steps_)) return flow_->step(soil_, walls_, neighbours_.cells(), dt);
+  Powers powers;
+  const StepExtrema extrema = flow_->step(soil_, walls_, neighbours_.cells(), dt, &powers);
+  energy_account_.measure(powers, time_ + 0.5 * dt);
+  return extrema;
+}
+
 double Simulation::choose_step(double until) const {
   const double dt = time_step(model_.time, bounds_, max_speed_, max_acceleration_);
   // A remainder shorter than a thousandth of a step is added to this one, so that rounding leaves no tiny last step.
@@ -72,7 +82,9 @@ void Simulation::filter_density_if_due() {
   if (numerics.density_filter != DensityFilter::shepard || steps_ == 0 || steps_ % numerics.filter_interval != 0)
     return;
   Stopwatch watch;
+  const double before = compression_energy(constants(), soil_);
   flow_->filter_density(soil_, walls_, neighbours_.cells());
+  energy_account_.filtered(before - compression_energy(constants(), soil_));
   watch.lap(times_.update);
 }
 

@@ -7,6 +7,7 @@
 #include "integrate/flow.hpp"
 #include "simulation/checkpoint_state.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/energy_account.hpp"
 #include "simulation/frame.hpp"
 #include "simulation/ground_contact.hpp"
 #include "simulation/memory.hpp"
@@ -46,6 +47,8 @@ class Simulation {
   /// All particles in order of id.
   Frame frame() const;
   HistoryRow history_row() const;
+  /// Where the energy of the run is and has gone.
+  EnergyBudget energy() const;
   /// Everything but wall clock, threads, field and quality, which the caller knows.
   RunResult result() const;
   /// What the checks look at, but for the random field, which the caller knows.
@@ -61,6 +64,7 @@ class Simulation {
 
  private:
   double choose_step(double until) const;
+  StepExtrema flow_step(double dt);
   void filter_density_if_due();
   void check(const StepExtrema& extrema) const;
   [[noreturn]] void report_divergence() const;
@@ -77,6 +81,7 @@ class Simulation {
   NeighbourUpkeep neighbours_;
   StartingPositions starts_;
   GroundContact contact_;
+  EnergyAccount energy_account_;
   RestRule rest_rule_;
   StepBounds bounds_;
   double time_ = 0.0;               ///< [s]

@@ -12,6 +12,7 @@
 
 #include "material/constitutive_models-inl.hpp"
 #include "math/tensor-inl.hpp"
+#include "sph/energy-inl.hpp"
 #include "sph/flow_constants.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -92,7 +93,8 @@ struct FlowRateSums {
 /// Pressure, stress, and the rates of density and elastic stress.                [Z20] Eqs. 1, 3-10
 /// @param tan_phi  of the soil, or of the wall that it slides along
 /// @param at       the point, or the points of a cluster: q(), c(), constant(get) of its ConstitutiveParameters;
-///                 elastic() as the model needs it; set_stress(s, p), set_rates(drho, gamma_dot)
+///                 elastic() as the model needs it; set_stress(s, p), set_rates(drho, gamma_dot);
+///                 set_powers(f), which calls f(volume) for StressPowers where an evaluation measures them
 template <class Real, class Model, class Point>
 HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const FlowRates<Real>& rates, Real tan_phi,
                              Point&& at) {
@@ -109,10 +111,14 @@ HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const F
                                .tan_phi = tan_phi,
                                .eta = at.constant([](Parameters soil) { return soil.eta; }),
                                .two_G = at.constant([](Parameters soil) { return 2.0 * soil.G; })};
-  at.set_stress(cauchy(p, model.stress(state, at.elastic())), p);
+  const Deviator<Real> t = model.stress(state, at.elastic());
+  at.set_stress(cauchy(p, t), p);
   // drho/dt = -rho expansion + rho0 diffusion
   const Real rho0 = at.constant([](Parameters soil) { return soil.eos.rho0; });
   at.set_rates(rho0 * fnma(q + Real(1.0), rates.expansion, rates.diffusion), state.gamma_dot);
+  at.set_powers([&](Real V) HWY_ATTR {
+    return stress_powers(V, p, t, e, state.eta, trace(rates.L), rates.expansion, rates.diffusion, q);
+  });
 }
 
 }  // namespace talus::HWY_NAMESPACE

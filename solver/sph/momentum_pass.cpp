@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sph/energy-inl.hpp"
 #include "sph/kernel-inl.hpp"
 #include "sph/momentum-inl.hpp"
 #include "sph/pairs-inl.hpp"
@@ -58,7 +59,7 @@ void wall_stress_dispatch(PackedFlow& f, const FlowConstants& k, WallParticles& 
                      [&]<class Kernel>(std::type_identity<Kernel>) { wall_stress_loop<Kernel>(f, k, walls, batch); });
 }
 
-template <class Kernel, bool Quadratic>
+template <class Kernel, bool Quadratic, bool Measure>
 HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range clusters) {
   const double quantum = f.fixed.quantum;
   const Kernel kernel(quantum / k.h);
@@ -77,6 +78,7 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
     load_groups(f.soil.stress.data() + 4 * i, s.xx, s.yy, s.xy, p);
     const Lanes viscosity_of_i = viscosity.of_particle(rho);
     Vector<Lanes> sum{Lanes(0.0), Lanes(0.0)};
+    auto powers = PairPowers<Lanes>::zero();
     const auto add_soil = [&](const Pair& pair) HWY_ATTR {
       const float* HWY_RESTRICT motion = f.soil.motion.data() + 4 * pair.j;
       const float* HWY_RESTRICT density = f.soil.density.data() + 4 * pair.j;
@@ -84,28 +86,42 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
       const Lanes v_dot_r = dot(v - Vector<Lanes>{Lanes(motion[2]), Lanes(motion[3])}, pair.r);
       const Lanes Pi = viscosity(viscosity_of_i, rho, Lanes(density[2]), v_dot_r, pair.r2);
       sum = add_force(sum, s, stress_of(f.soil.stress, pair.j), Pi, VF, pair.r);
+      if constexpr (Measure) powers.add_soil(Pi, VF, v_dot_r);
     };
     const auto add_wall = [&](const Pair& pair) HWY_ATTR {
       const WallPair<Lanes> w = wall.pair(pair.r, v, wall_particle(f.walls, pair.j));
       Lanes VF = volume_w * pair.kernel;
       if (wall.only_approaching) VF = select_or_zero(w.v_dot_r < Lanes(0.0), VF);
       const Lanes Pi = viscosity(viscosity_of_i, rho, rho, w.v_dot_r, pair.r2);
-      sum = add_force(sum, s, stress_of(f.walls.stress, pair.j), Pi, VF, pair.r);
+      const Symmetric<Lanes> s_w = stress_of(f.walls.stress, pair.j);
+      sum = add_force(sum, s, s_w, Pi, VF, pair.r);
+      if constexpr (Measure) powers.add_wall(s, s_w, Pi, VF, v, w.v_ij, pair.r);
     };
     for_neighbours<true>(x, f.soil.motion.data(), neighbours(f.soil_soil, c), minus_F, add_soil);
     for_neighbours<false>(x, f.walls.place.data(), neighbours(f.soil_wall, c), minus_F, add_wall);
     const Vector<Lanes> a = fma(to_force / rho, sum, g);
     store(a.x, f.soil.ax.data() + i, count);
     store(a.y, f.soil.ay.data() + i, count);
+    if constexpr (Measure) {
+      const Lanes V_to_F = volume * to_force;
+      store(powers.taken_by_viscosity(V_to_F), f.powers.artificial_viscosity.data() + i, count);
+      store(powers.taken_by_boundaries(V_to_F), f.powers.boundaries.data() + i, count);
+    }
   }
 }
 
-void momentum_dispatch(PackedFlow& f, const FlowConstants& k, Range clusters) {
+void momentum_dispatch(PackedFlow& f, const FlowConstants& k, bool measure, Range clusters) {
   with_kernel<Lanes>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+    const auto run = [&]<bool Quadratic>() {
+      if (measure)
+        momentum_loop<Kernel, Quadratic, true>(f, k, clusters);
+      else
+        momentum_loop<Kernel, Quadratic, false>(f, k, clusters);
+    };
     if (k.numerics.beta > 0.0)
-      momentum_loop<Kernel, true>(f, k, clusters);
+      run.template operator()<true>();
     else
-      momentum_loop<Kernel, false>(f, k, clusters);
+      run.template operator()<false>();
   });
 }
 
@@ -122,8 +138,8 @@ void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& wall
   HWY_DYNAMIC_DISPATCH(wall_stress_dispatch)(f, k, walls, batch);
 }
 
-void momentum_pass(PackedFlow& f, const FlowConstants& k, Range clusters) {
-  HWY_DYNAMIC_DISPATCH(momentum_dispatch)(f, k, clusters);
+void momentum_pass(PackedFlow& f, const FlowConstants& k, bool measure, Range clusters) {
+  HWY_DYNAMIC_DISPATCH(momentum_dispatch)(f, k, measure, clusters);
 }
 
 }  // namespace talus

@@ -15,6 +15,7 @@
 #include "math/vec2.hpp"
 #include "neighbours/cell_list.hpp"
 #include "particles/geometry_input.hpp"
+#include "sph/powers.hpp"
 
 namespace talus {
 
@@ -86,6 +87,7 @@ struct PackedFlow {
   std::optional<double> mass;  ///< of every soil particle, where all have the same [kg/m]
   PackedSoil soil;
   PackedWalls walls;
+  ParticlePowers<float> powers;                                         ///< of the last evaluation that measured them
   std::vector<std::uint32_t> soil_clusters = {0}, wall_clusters = {0};  ///< first place of each, and one more
   ClusterList soil_soil, soil_wall, wall_soil;                          ///< target_source
 };

@@ -40,12 +40,14 @@ void list_neighbours(const NeighbourSearch& search, std::size_t batch, ClusterLi
 
 /// First pass over some of the soil's clusters: velocity gradient, density rate, stress ([Z20] Eqs. 1-10), with the
 /// elastic stress as it will be after `ahead` [s]. `keep`: what returning it to the yield surface takes off is taken
-/// off the soil's.
-void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Range clusters);
+/// off the soil's. `measure`: writes the powers of the stress.
+void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, bool measure,
+                 Range clusters);
 /// Stress of one batch of the walls' clusters, extrapolated from the soil.
 void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& walls, std::size_t batch);
-/// Second pass over some of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included.
-void momentum_pass(PackedFlow& f, const FlowConstants& k, Range clusters);
+/// Second pass over some of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included. `measure`: writes the
+/// powers of the artificial viscosity and of the walls.
+void momentum_pass(PackedFlow& f, const FlowConstants& k, bool measure, Range clusters);
 
 /// Moves soil particles on by dt [s] at the present rates, positions with the velocities of the last evaluation
 /// (`midpoint_velocity`) or with the mean of the old and the new ones, and packs the outcome.

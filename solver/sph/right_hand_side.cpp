@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sph/continuity-inl.hpp"
+#include "sph/energy-inl.hpp"
 #include "sph/kernel-inl.hpp"
 #include "sph/momentum-inl.hpp"
 #include "sph/wall-inl.hpp"
@@ -36,6 +37,7 @@ void for_neighbours(const CellList& cells, const Points& points, Vec2 x_i, doubl
 struct SoilPoint {
   const FlowConstants& k;
   Soil& soil;
+  ParticlePowers<double>* powers;
   std::size_t i;
 
   const ConstitutiveParameters& parameters(std::size_t j) const {
@@ -58,6 +60,14 @@ struct SoilPoint {
     soil.drho[i] = drho;
     soil.gamma_dot[i] = gamma_dot;
   }
+  template <class Of>
+  void set_powers(Of&& of) const {
+    if (!powers) return;
+    const StressPowers<double> values = of(soil.m[i] / soil.rho[i]);
+    powers->deviator[i] = values.deviator;
+    powers->viscosity[i] = values.viscosity;
+    powers->density_diffusion[i] = values.density_diffusion;
+  }
 
   Deviator<double> value() const { return {soil.txx[i], soil.tyy[i], soil.txy[i]}; }
   void add(Deviator<double> change) const {
@@ -79,6 +89,7 @@ struct Passes {
   Soil& soil;
   WallParticles& walls;
   const ParticleCells& cells;
+  ParticlePowers<double>* powers;
   Kernel kernel{1.0 / k.h};
   double sigma = sigma_h2<Kernel>(k.h), support2 = 4.0 * k.h * k.h;
   WallLaw<double> wall_law{k, 1.0};
@@ -91,7 +102,7 @@ struct Passes {
   WallParticle<double> wall_particle(std::size_t j) const {
     return {vector(walls.normal(j)), walls.depth[j], boundary(j).slip == WallSlip::free_slip};
   }
-  double q(std::size_t j) const { return SoilPoint{k, soil, j}.q(); }
+  double q(std::size_t j) const { return SoilPoint{k, soil, nullptr, j}.q(); }
 
   template <class Model>
   void update_stress(std::size_t i) const {
@@ -117,7 +128,7 @@ struct Passes {
     });
     const double to_diffusion = 2.0 * k.numerics.delta * k.h * k.c_s * sigma;
     update_point(k, Model(k.rheology), sums.rates(-sigma, to_diffusion, by_mass, rho_i), tan_phi,
-                 SoilPoint{k, soil, i});
+                 SoilPoint{k, soil, powers, i});
   }
 
   void update_wall_stress(std::size_t w) const {
@@ -143,19 +154,30 @@ struct Passes {
     const double rho_i = soil.rho[i], viscosity_of_i = viscosity.of_particle(rho_i);
     const Symmetric<double> s_i = stress(i);
     Vector<double> sum{0.0, 0.0};
+    auto pair_powers = PairPowers<double>::zero();
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
-      const double Pi = viscosity(viscosity_of_i, rho_i, soil.rho[j], dot(v_i - vector(soil.velocity(j)), r), r2);
-      sum = add_force(sum, s_i, stress(j), Pi, soil.m[j] / soil.rho[j] * minus_F(r2), r);
+      const double v_dot_r = dot(v_i - vector(soil.velocity(j)), r);
+      const double Pi = viscosity(viscosity_of_i, rho_i, soil.rho[j], v_dot_r, r2);
+      const double VF = soil.m[j] / soil.rho[j] * minus_F(r2);
+      sum = add_force(sum, s_i, stress(j), Pi, VF, r);
+      if (powers) pair_powers.add_soil(Pi, VF, v_dot_r);
     });
     for_neighbours(cells.walls, walls, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const WallPair<double> w = wall_law.pair(r, v_i, wall_particle(j));
       if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
       const double Pi = viscosity(viscosity_of_i, rho_i, rho_i, w.v_dot_r, r2);
-      sum = add_force(sum, s_i, {walls.sxx[j], walls.syy[j], walls.sxy[j]}, Pi, walls.volume * minus_F(r2), r);
+      const Symmetric<double> s_w{walls.sxx[j], walls.syy[j], walls.sxy[j]};
+      const double VF = walls.volume * minus_F(r2);
+      sum = add_force(sum, s_i, s_w, Pi, VF, r);
+      if (powers) pair_powers.add_wall(s_i, s_w, Pi, VF, v_i, w.v_ij, r);
     });
     const Vector<double> a = fma(-sigma / rho_i, sum, vector(k.g));
     soil.ax[i] = a.x;
     soil.ay[i] = a.y;
+    if (!powers) return;
+    const double V_to_F = -sigma * soil.m[i] / rho_i;
+    powers->artificial_viscosity[i] = pair_powers.taken_by_viscosity(V_to_F);
+    powers->boundaries[i] = pair_powers.taken_by_boundaries(V_to_F);
   }
 
   template <class Model>
@@ -237,10 +259,12 @@ double filtered_density(const FlowConstants& k, const Soil& soil, std::size_t i,
 
 }  // namespace
 
-void evaluate_plain(const FlowConstants& k, Soil& soil, WallParticles& walls, const ParticleCells& cells) {
+void evaluate_plain(const FlowConstants& k, Soil& soil, WallParticles& walls, const ParticleCells& cells,
+                    ParticlePowers<double>* powers) {
+  if (powers) powers->resize(soil.size());
   with_kernel<double>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
     with_constitutive_model<double>(k.rheology, [&]<class Model>(std::type_identity<Model>) {
-      Passes<Kernel>{k, soil, walls, cells}.template evaluate<Model>();
+      Passes<Kernel>{k, soil, walls, cells, powers}.template evaluate<Model>();
     });
   });
 }

@@ -4,6 +4,7 @@
 #include "neighbours/cell_list.hpp"
 #include "particles/particles.hpp"
 #include "sph/flow_constants.hpp"
+#include "sph/powers.hpp"
 
 namespace talus {
 
@@ -13,7 +14,9 @@ namespace talus {
 /// Fills ax, ay, drho, dt** and the derived p, s**, gamma_dot of the active soil, and the extrapolated stress of the
 /// walls. With the elastic law it first returns t** to the yield surface. The reach of the cells must cover 2h around
 /// every particle's present position.
-void evaluate_plain(const FlowConstants& k, Soil& soil, WallParticles& walls, const ParticleCells& cells);
+/// @param powers  where not null: filled with the powers of every particle of the active soil
+void evaluate_plain(const FlowConstants& k, Soil& soil, WallParticles& walls, const ParticleCells& cells,
+                    ParticlePowers<double>* powers = nullptr);
 
 /// One pass of the Shepard filter over the densities of the active soil.
 void filter_density(const FlowConstants& k, Soil& soil, const WallParticles& walls, const ParticleCells& cells);

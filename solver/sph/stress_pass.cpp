@@ -22,8 +22,9 @@ struct ClusterPoint {
   const FlowConstants& k;
   Soil& soil;
   double ahead;  ///< [s]
-  bool keep;
+  bool keep, measure;
   std::size_t i, count;
+  Lanes volume;  ///< [m3/m]
 
   HWY_INLINE Lanes q() const { return load(f.soil.q.data() + i); }
   HWY_INLINE Lanes tan_phi() const { return state(soil.tan_phi); }
@@ -43,6 +44,14 @@ struct ClusterPoint {
   HWY_INLINE void set_rates(Lanes drho, Lanes gamma_dot) const {
     store(drho, f.soil.drho.data() + i, count);
     store(gamma_dot, f.soil.gamma_dot.data() + i, count);
+  }
+  template <class Of>
+  HWY_INLINE void set_powers(Of&& of) const {
+    if (!measure) return;
+    const StressPowers<Lanes> powers = of(volume);
+    store(powers.deviator, f.powers.deviator.data() + i, count);
+    store(powers.viscosity, f.powers.viscosity.data() + i, count);
+    store(powers.density_diffusion, f.powers.density_diffusion.data() + i, count);
   }
 
   /// The elastic stress after `ahead` at the present rates.
@@ -70,7 +79,8 @@ struct ClusterPoint {
 };
 
 template <class Kernel, class Model, bool Diffuse, bool OneMaterial, bool ByMass>
-HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Range clusters) {
+HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, bool measure,
+                          Range clusters) {
   const double quantum = f.fixed.quantum, sigma = sigma_h2<Kernel>(k.h);
   const Kernel kernel(quantum / k.h);
   const Model model(k.rheology);
@@ -84,7 +94,7 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
     Lanes volume, q, rho, material;
     load_groups(f.soil.motion.data() + 4 * i, x.x, x.y, v.x, v.y);
     load_groups(f.soil.density.data() + 4 * i, volume, q, rho, material);
-    const ClusterPoint point{f, k, soil, ahead, keep, i, count};
+    const ClusterPoint point{f, k, soil, ahead, keep, measure, i, count, volume};
     Lanes tan_phi = point.tan_phi();
     auto sums = FlowRateSums<Lanes>::zero();
     const auto add_soil = [&](const Pair& pair) HWY_ATTR {
@@ -115,14 +125,15 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
 }
 
 /// Every choice that the pair loop would otherwise make for each pair is made once.
-void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Range clusters) {
+void stress_dispatch(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, bool measure,
+                     Range clusters) {
   with_kernel<Lanes>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
     with_constitutive_model<Lanes>(k.rheology, [&]<class Model>(std::type_identity<Model>) {
       const auto run = [&]<bool Diffuse, bool OneMaterial>() {
         if (k.numerics.continuity == Continuity::mass)
-          stress_loop<Kernel, Model, Diffuse, OneMaterial, true>(f, k, soil, ahead, keep, clusters);
+          stress_loop<Kernel, Model, Diffuse, OneMaterial, true>(f, k, soil, ahead, keep, measure, clusters);
         else
-          stress_loop<Kernel, Model, Diffuse, OneMaterial, false>(f, k, soil, ahead, keep, clusters);
+          stress_loop<Kernel, Model, Diffuse, OneMaterial, false>(f, k, soil, ahead, keep, measure, clusters);
       };
       if (k.numerics.density_filter != DensityFilter::delta_sph)
         run.template operator()<false, true>();
@@ -142,8 +153,9 @@ namespace talus {
 
 HWY_EXPORT(stress_dispatch);
 
-void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, Range clusters) {
-  HWY_DYNAMIC_DISPATCH(stress_dispatch)(f, k, soil, ahead, keep, clusters);
+void stress_pass(PackedFlow& f, const FlowConstants& k, Soil& soil, double ahead, bool keep, bool measure,
+                 Range clusters) {
+  HWY_DYNAMIC_DISPATCH(stress_dispatch)(f, k, soil, ahead, keep, measure, clusters);
 }
 
 }  // namespace talus

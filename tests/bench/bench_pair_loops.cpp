@@ -53,7 +53,7 @@ struct Bed {
     }
     for (std::size_t b = 0; b < f.wall_soil.batches.size(); ++b) list_neighbours(wall_soil, b, f.wall_soil);
   }
-  void stress() { stress_pass(f, k, soil, 0.0, false, {0, f.soil_clusters.size() - 1}); }
+  void stress() { stress_pass(f, k, soil, 0.0, false, false, {0, f.soil_clusters.size() - 1}); }
   void report(benchmark::State& state) const {
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * soil.size()));
     state.SetLabel(pair_loops_target());
@@ -100,7 +100,7 @@ void WallStressPass(benchmark::State& state) {
 void MomentumPass(benchmark::State& state) {
   Bed bed(state.range(0), static_cast<KernelShape>(state.range(1)));
   bed.stress();
-  for (auto _ : state) momentum_pass(bed.f, bed.k, {0, bed.f.soil_clusters.size() - 1});
+  for (auto _ : state) momentum_pass(bed.f, bed.k, false, {0, bed.f.soil_clusters.size() - 1});
   bed.report(state);
 }
 void Move(benchmark::State& state) {

@@ -45,6 +45,18 @@ RunResult sample_result() {
           .backend = "vectorised",
           .simd = "AVX2",
           .field = {.captured_variance = 0.016, .mean_phi = radians(25.0), .terms = 5},
+          .energy = {.kinetic = 1,
+                     .potential = -1024,
+                     .compression = 2,
+                     .distortion = 4,
+                     .friction = 512,
+                     .viscosity = 8,
+                     .artificial_viscosity = 256,
+                     .density_diffusion = 16,
+                     .boundaries = 32,
+                     .contact = 64,
+                     .departed = 128,
+                     .stored_at_start = 3},
           .quality = {.verdict = Verdict::invalid,
                       .reasons = {{.check = "compression", .value = 0.06, .limit = 0.05, .message = "6 %"},
                                   {.check = "mach_number",
@@ -108,6 +120,21 @@ TEST(ResultJson, HasTheKeysOfTheContract) {
       (json{
           {"check", "mach_number"}, {"verdict", "invalid"}, {"value", 1.5}, {"limit", 0.5}, {"message", "1.5 times"}}));
   EXPECT_EQ(d["warnings"], (json{{{"pointer", "/time/end_s"}, {"message", "is long"}}}));
+  constexpr double created = 1 - 1024 + 2 + 4 + 512 + 8 + 256 + 16 + 32 + 64 + 128 - 3;
+  EXPECT_EQ(d["energy"], (json{{"kinetic_J_m", 1},
+                               {"potential_J_m", -1024},
+                               {"compression_J_m", 2},
+                               {"distortion_J_m", 4},
+                               {"friction_J_m", 512},
+                               {"viscosity_J_m", 8},
+                               {"artificial_viscosity_J_m", 256},
+                               {"density_diffusion_J_m", 16},
+                               {"boundaries_J_m", 32},
+                               {"contact_J_m", 64},
+                               {"departed_J_m", 128},
+                               {"stored_at_start_J_m", 3},
+                               {"created_J_m", created},
+                               {"created_share", created / 1024}}));
   EXPECT_EQ(d["provenance"]["version"], "0.1.0");
   EXPECT_EQ(d["provenance"]["seed"], 9007199254740993u);
   EXPECT_EQ(d["provenance"]["realization"], 7);
@@ -129,6 +156,7 @@ TEST(ResultJson, ObeysItsSchema) {
   empty.digest = "ffffffffffffffff";
   const ordered_json d = result_json(empty, deterministic);
   EXPECT_TRUE(d["provenance"]["realization"].is_null());
+  EXPECT_TRUE(d["energy"]["created_share"].is_null()) << "gravity has done no work";
   EXPECT_EQ(schema_faults(json::parse(d.dump())), "");
 }
 
@@ -146,7 +174,7 @@ TEST(ResultJson, ComesBack) {
 TEST(ResultJson, OfAnEarlierVersionIsReadWithoutWhatCameLater) {
   const TemporaryDirectory dir;
   json earlier = document();
-  for (const char* key : {"backend", "simd", "quality", "warnings", "mass_kg_m"}) earlier.erase(key);
+  for (const char* key : {"backend", "simd", "quality", "warnings", "mass_kg_m", "energy"}) earlier.erase(key);
   EXPECT_EQ(schema_faults(earlier), "");
   write_file_atomically(dir / "result.json", earlier.dump());
   const RunResult result = read_result(dir / "result.json").first;
@@ -155,6 +183,7 @@ TEST(ResultJson, OfAnEarlierVersionIsReadWithoutWhatCameLater) {
   EXPECT_EQ(result.mass.outline, 0.0);
   EXPECT_EQ(result.quality.verdict, Verdict::not_assessed);
   EXPECT_TRUE(result.quality.reasons.empty() && result.warnings.empty());
+  EXPECT_EQ(result.energy, EnergyBudget());
   EXPECT_EQ(result.digest, earlier["digest"]);
 }
 
@@ -217,7 +246,8 @@ TEST(ResultJson, NamesAnyKeyThatIsMissing) {
   const TemporaryDirectory dir;
   for (const std::string& pointer : pointers(document())) {
     const std::string key = pointer.substr(1);
-    if (key == "backend" || key == "simd" || key == "quality" || key == "warnings" || key == "mass_kg_m")
+    if (key == "backend" || key == "simd" || key == "quality" || key == "warnings" || key == "mass_kg_m" ||
+        key == "energy")
       continue;  // came later
     if (const Measure* measure = find_measure(key); measure && measure != measure_table.data()) continue;
     const json::json_pointer place(pointer);

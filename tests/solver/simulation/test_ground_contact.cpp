@@ -28,7 +28,7 @@ Soil particle(Vec2 x, Vec2 v, double tan_phi) {
 }
 
 GroundContact contact_with(Polyline line, WallFriction friction = {}) {
-  return {{std::move(line)}, {friction}, 1.0, 1};
+  return {{std::move(line)}, {friction}, 1.0, {3.0, -9.0}, 1};
 }
 const Polyline flat{{{-100, 0}, {100, 0}}, false};
 
@@ -39,6 +39,17 @@ TEST(GroundContact, TakesTheApproachAndFrictionsShareOfTheSliding) {
   EXPECT_DOUBLE_EQ(soil.y[0], 0.1);
   EXPECT_DOUBLE_EQ(soil.vy[0], 0.0);
   EXPECT_DOUBLE_EQ(soil.vx[0], 5 - 0.5 * 2);
+}
+
+TEST(GroundContact, CountsTheKineticAndThePotentialEnergyThatItTakes) {
+  Soil soil = particle({0, 0.02}, {5, -2}, 0.5);
+  soil.m[0] = 7;
+  GroundContact contact = contact_with(flat);
+  contact.act(soil, 0.1);
+  const double kinetic = 0.5 * 7 * (5 * 5 + 2 * 2 - 4 * 4), lift = 7 * 9.0 * 0.08;  // the sliding is slowed from 5 to 4
+  EXPECT_NEAR(contact.taken(), kinetic - lift, 1e-12);
+  contact.restore({0}, 10.0);
+  EXPECT_EQ(contact.taken(), 10.0);
 }
 
 TEST(GroundContact, FrictionStopsButDoesNotTurnBack) {
