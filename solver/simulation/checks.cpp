@@ -30,7 +30,7 @@ std::string particles(std::int64_t n, const RunFacts& f) {
 
 /// What gravity gave [J/m]. A slide that hardly moves is compared with a fall by one spacing, below which the method
 /// resolves nothing.
-double gravity_work(const RunFacts& f) { return std::max(-f.energy.potential, f.weight * f.dx); }
+double gravity_work(const RunFacts& f) { return std::max(f.energy.gravity_work(), f.weight * f.dx); }
 
 constexpr Check checks[] = {
     // Stable runs of all trials create less than 0.9 % of gravity's work; unstable ones, whose fronts are wrong by
