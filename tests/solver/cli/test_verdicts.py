@@ -82,7 +82,7 @@ class Run(Directory):
         self.assertNotIn("short_correlation_length", [reason["check"] for reason in quality["reasons"]])
 
     def test_all_commands_print_the_same_warnings(self):
-        settings = overrides(["random_field.correlation_length_m=0.2", "random_field.terms=10", "particle_spacing_m=1", "time.end_s=0.1"])
+        settings = overrides(["random_field.correlation_length_m=0.2", "random_field.terms=10", "time.end_s=0.1"])
         run = talus("run", SMALL, *settings, "--out", self.dir / "a")
         study = talus("study", SMALL, *settings, "--realizations", 1, "--out", self.dir / "b", "--no-figures")
         validate = talus("validate", SMALL, *settings)
