@@ -39,12 +39,6 @@ constexpr Check checks[] = {
      [](const RunFacts&, double x) {
        return "the numerical method created energy equal to " + percent(x) + " of gravity's work";
      }},
-    // The ground is at rest: energy that it gives comes from the numerical method. 3 % without artificial viscosity.
-    {"energy_from_ground",
-     [](const RunFacts& f) { return Value(-f.energy.boundaries / gravity_work(f)); },
-     0.01,
-     {},
-     [](const RunFacts&, double x) { return "the ground gave energy equal to " + percent(x) + " of gravity's work"; }},
     // Density varies as the square of the Mach number: at 0.2 by 4 %, four times as much as with a speed of sound of
     // ten
     // times the fastest fall (Monaghan 1994). A run at 0.7 went twice as far.
