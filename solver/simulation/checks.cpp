@@ -35,7 +35,12 @@ double gravity_work(const RunFacts& f) { return std::max(f.energy.gravity_work()
 constexpr Check checks[] = {
     // Stable runs of all trials create less than 0.9 % of gravity's work; unstable ones, whose fronts are wrong by
     // metres, 16 % and more.
-    {"energy_created", [](const RunFacts& f) { return Value(f.energy.created() / gravity_work(f)); }, 0.01, 0.1,
+    // Walls that act on approaching particles only ([Z20]) switch on and off, which creates energy at every switch; it
+    // is
+    // a property of that method, which a case must ask for.
+    {"energy_created",
+     [](const RunFacts& f) { return f.steady_contact ? Value(f.energy.created() / gravity_work(f)) : Value(); }, 0.01,
+     0.1,
      [](const RunFacts&, double x) {
        return "the numerical method created energy equal to " + percent(x) + " of gravity's work";
      }},
@@ -145,6 +150,7 @@ RunFacts facts_before_run(const Model& model, std::span<const Vec2> starts) {
   RunFacts facts;
   facts.soil = static_cast<std::int64_t>(starts.size());
   facts.dx = model.dx;
+  facts.steady_contact = model.walls.contact == WallContact::always;
   facts.rows = rows_across(starts, model.dx);
   const StepBounds bounds = step_bounds(model, flow_constants(model));
   if (model.time.fixed_step) facts.courant = *model.time.fixed_step * bounds.c / bounds.h;

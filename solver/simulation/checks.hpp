@@ -18,6 +18,7 @@ constexpr double stable_cfl(Integrator integrator) { return integrator == Integr
 /// What the checks look at. The defaults are those of a run without fault; what is unset is not checked.
 struct RunFacts {
   EnergyBudget energy = {};                       ///< at the end
+  bool steady_contact = true;                     ///< the walls act at all times, not only on soil that approaches them
   double weight = 1.0;                            ///< of all soil [N/m]
   double mach = 0.0;                              ///< peak speed over the speed of sound [-]
   double density_rise = 0.0;                      ///< largest rho/rho0 - 1 of any particle at any time [-]

@@ -128,6 +128,19 @@ TEST(Checks, TheWorstReasonDecides) {
   EXPECT_EQ(objections_in(objections_text(quality)).size(), 3u);
 }
 
+TEST(Checks, EnergyIsNotComparedWhereWallsSwitchOnAndOff) {
+  RunFacts f = facts();
+  f.energy.kinetic *= 1.5;
+  EXPECT_EQ(assess(f).verdict, Verdict::invalid);
+  f.steady_contact = false;
+  EXPECT_EQ(assess(f).verdict, Verdict::sound);
+  Model m = collapse(0.05);
+  const std::vector<Vec2> one{{0.1, 0.1}};
+  EXPECT_TRUE(facts_before_run(m, one).steady_contact);
+  m.walls.contact = WallContact::approaching;
+  EXPECT_FALSE(facts_before_run(m, one).steady_contact);
+}
+
 TEST(Checks, NotANumberIsBeyondEveryLimit) {
   RunFacts f = facts();
   f.density_rise = std::numeric_limits<double>::quiet_NaN();
