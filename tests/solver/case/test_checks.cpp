@@ -57,7 +57,7 @@ TEST(Checks, TheCourantNumberIsThatOfAStableIntegrator) {
   EXPECT_TRUE(faults(0.4, "leapfrog").empty());
   ASSERT_EQ(faults(0.81, "rk2").size(), 1u);
   EXPECT_EQ(faults(0.81, "rk2")[0],
-            "/numerics/cfl 0.81 is too large for integrator \"rk2\": allowed > 0 and <= 0.8; measured on slopes, the "
+            "/numerics/cfl: 0.81 is too large for integrator \"rk2\": allowed > 0 and <= 0.8; measured on slopes, the "
             "deposit begins to shake a little above");
   ASSERT_EQ(faults(0.41, "leapfrog").size(), 1u);
   EXPECT_NE(faults(0.41, "leapfrog")[0].find("integrator \"leapfrog\": allowed > 0 and <= 0.4"), std::string::npos);
