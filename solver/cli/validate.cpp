@@ -1,8 +1,10 @@
 // talus validate CASE: all faults of a case, or what running it will take.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -11,6 +13,7 @@
 #include "cli/verbs.hpp"
 #include "particles/geometry.hpp"
 #include "random_field/random_field.hpp"
+#include "run/warnings.hpp"
 #include "simulation/simulation.hpp"
 #include "support/json.hpp"
 #include "support/run_memory.hpp"
@@ -33,6 +36,7 @@ struct Demand {
   double memory = 0.0;  ///< [bytes]
   std::optional<double> captured_variance;
   std::size_t field_terms = 0;
+  std::vector<Fault> warnings;
 };
 
 Demand measure(const Case& c) {
@@ -49,16 +53,10 @@ Demand measure(const Case& c) {
     d.captured_variance = field.captured_variance();
     d.field_terms = field.terms();
   }
+  d.warnings = warnings_before_run(
+      c, plan,
+      {.captured_variance = d.captured_variance.value_or(1.0), .terms = static_cast<std::int64_t>(d.field_terms)});
   return d;
-}
-
-void warn_of_lost_variance(const Demand& d, std::vector<Fault>& warnings) {
-  if (!d.captured_variance || *d.captured_variance >= 0.5) return;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "captures %.2g %% of the variance with %zu terms: most of the stated variability never enters the runs",
-                100.0 * *d.captured_variance, d.field_terms);
-  warnings.push_back({"/random_field", text});
 }
 
 Json to_json(const std::vector<Fault>& faults) {
@@ -163,8 +161,8 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
 
 Exit validate(const ValidateOptions& options) try {
   LoadedCase loaded = load_case(options.case_file, options.overrides);
-  const Demand demand = measure(loaded.value);
-  warn_of_lost_variance(demand, loaded.warnings);
+  Demand demand = measure(loaded.value);
+  std::ranges::move(demand.warnings, std::back_inserter(loaded.warnings));
   options.json ? print_json(to_json(loaded, demand)) : print_text(loaded, demand);
   return Exit::ok;
 } catch (const ConfigError& e) {
