@@ -225,6 +225,15 @@ TEST(Energy, OfASlideIsExplained) {
   EXPECT_LT(std::abs(created_share(m)), 0.001);
 }
 
+TEST(Energy, TheShepardFilterCountsWhatItTakes) {
+  Model m = slope(0.6);
+  m.numerics.density_filter = DensityFilter::shepard;
+  m.time.end = 4.0;
+  const EnergyBudget e = after(m, m.time.end);
+  EXPECT_LT(std::abs(*e.created_share()), 0.004);
+  EXPECT_GT(e.density_diffusion, 0.004 * e.gravity_work()) << "counted with the other sign, it would show";
+}
+
 TEST(Energy, FindsAnUnstableRun) {
   Model m = slope();
   m.numerics.integrator = Integrator::leapfrog;
