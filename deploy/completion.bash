@@ -52,7 +52,7 @@ _talus_argument_of() {
     --yields) echo elastic regularized ;;
     --precisions) echo single double ;;
     --new-token) echo submit read ;;
-    --json | --resume | --figures | --retry-failed | --no-figures | --prepare | --from-runs | --watch | --keys) return 1 ;;
+    --json | --resume | --figures | --retry-failed | --no-figures | --prepare | --from-runs | --watch | --keys | --walls) return 1 ;;
     --*) echo "" ;;
     *) return 1 ;;
   esac
@@ -80,9 +80,9 @@ _talus() {
     case ${program##*/}:$verb in
       talus: | talus:help) wanted=$(_talus_verbs "$program") ;;
       talus:schema) wanted=$("$program" schema) ;;
-      talus:stats | talus:plot | talus:profile) wanted=directory ;;
+      talus:stats | talus:profile) wanted=directory ;;
       talus:status | talus:watch | talus:results | talus:cancel) wanted=$(_talus_jobs "$program") ;;
-      talus:validate | talus:run | talus:field | talus:study | talus:submit | talus:bench) wanted=case ;;
+      talus:validate | talus:run | talus:field | talus:study | talus:submit | talus:bench | talus:plot) wanted=case ;;
       *) wanted="" ;;
     esac
   fi

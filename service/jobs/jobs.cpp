@@ -274,7 +274,12 @@ Json Jobs::evaluate(const Json& document) {
       run_once({scratch / "case.json", "--seed", "0", "--out", scratch / "run"}, config_.time_limit);
   if (!output.end.signal && output.end.exit_code == Exit::bad_case) throw Refusal(reason::bad_request, output.err);
   if (!output.ok()) throw Refusal(reason::internal, "the run failed: " + output.err);
-  return read_json((scratch / "run") / "result.json", 1 << 20);
+  Json result = read_json((scratch / "run") / "result.json", 1 << 20);
+  const Json& quality = result.at("quality");
+  if (quality.at("verdict") == word(Verdict::invalid))
+    throw Refusal(reason::internal, "the run failed: its result is invalid, since " +
+                                        quality.at("reasons").at(0).at("message").get<std::string>());
+  return result;
 }
 
 Json Jobs::distribution(const Job& job, const Measure& quantity, const Bins& bins) {

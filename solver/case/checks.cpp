@@ -122,15 +122,6 @@ void warn_of_open_ends(const Model& model, std::vector<Fault>& warnings) {
         {"/terrain/wall_top_m", "is lower than the slide's highest point; soil may spill over the wall and is lost"});
 }
 
-/// A spacing far too coarse.
-void warn_of_few_particles(const Model& model, std::vector<Fault>& warnings) {
-  const double cells = slide_area(model) / (model.dx * model.dx);
-  if (cells < 100.0)
-    warnings.push_back({"/particle_spacing_m", "leaves about " + rounded(cells) +
-                                                   " soil particles, too few for a meaningful run; a tenth of the flow "
-                                                   "depth is a usual spacing"});
-}
-
 }  // namespace
 
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults) {
@@ -164,14 +155,8 @@ std::vector<Fault> find_warnings(const Case& c) {
   std::vector<Fault> warnings;
   const Model& model = c.model;
   warn_of_unlikely_values(model, warnings);
-  warn_of_few_particles(model, warnings);
   if (!model.terrain.closed) warn_of_overhangs(model.terrain, warnings);
   if (!model.terrain.closed) warn_of_open_ends(model, warnings);
-  const double courant =
-      model.time.fixed_step.value_or(0.0) * sound_speed(model) / (model.numerics.h_over_dx * model.dx);
-  if (courant > 1.0)
-    warnings.push_back({"/time/fixed_step_s", "is large: sound travels " + rounded(courant) +
-                                                  " smoothing lengths in it; expect divergence above 1"});
   if (model.numerics.precision == Precision::full)
     warnings.push_back(
         {"/numerics/precision",

@@ -24,7 +24,11 @@ GroundReport report_ground(const LoadedCase& loaded) {
   const Model& model = loaded.value.model;
   const Polyline& line = model.boundaries.front().line;
   const Box box = bounding_box(model.slide);
-  GroundReport report{loaded.bed_source, model.terrain.bed.size(), 0, fit_line(line, model.dx), box};
+  GroundReport report{loaded.bed_source,
+                      model.terrain.bed.size(),
+                      0,
+                      fit_line(line, model.dx),
+                      {box.lo + model.terrain.origin, box.hi + model.terrain.origin}};
   report.kept = report.fitted.line.vertices.size() - (line.vertices.size() - report.given);  // less the end walls
   report.thickness = greatest_thickness(model, box);
   return report;

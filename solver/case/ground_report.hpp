@@ -14,7 +14,7 @@ struct GroundReport {
   std::size_t given = 0;   ///< vertices of the bed
   std::size_t kept = 0;    ///< vertices of the bed as fitted
   FittedLine fitted;       ///< the bed and its end walls, fitted to the spacing
-  Box slide;               ///< box around the soil [m]
+  Box slide;               ///< box around the soil, in the case's coordinates [m]
   double thickness = 0.0;  ///< greatest vertical thickness of the slide [m]
 };
 

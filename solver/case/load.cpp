@@ -48,7 +48,9 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
   in.object("terrain",
             "The rigid ground: a bed, or nothing where the slide is given by surfaces, which are joined to one.",
             Absent::defaults,
-            [&](ObjectReader& section) { read_terrain(section, m.terrain, directory, slide, m.dx, origins.bed); });
+            [&](ObjectReader& section) { read_terrain(section, m.terrain, directory, slide, m.dx, origins); });
+  for (const Vertices* v : {&slide.ground, &slide.slip}) origins.note_file(*v);
+  for (const Vertices& v : slide.origins) origins.note_file(v);
   m.slide = std::move(slide.parts);
   m.materials = std::move(slide.materials);
   origins.outlines = std::move(slide.origins);
@@ -108,6 +110,7 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   for (const char* key : {"end_s", "snapshot_times_s"}) endless["time"].erase(key);
   out.hash_without_end = case_hash(endless);
   out.bed_source = origins.bed.source;
+  out.files = std::move(origins.files);
   return out;
 }
 

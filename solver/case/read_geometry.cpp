@@ -239,7 +239,8 @@ SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, 
 }
 
 void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& directory, const SlideInput& slide,
-                  double dx, Vertices& bed) {
+                  double dx, SourceLocations& origins) {
+  Vertices& bed = origins.bed;
   bed = read_vertices(in, "bed", {2, most_vertices}, directory,
                       {"Bed polyline [x, y]. Open: from its left end to its right end with the soil on its left as it "
                        "is walked, vertical faces and overhangs allowed; closed: a ring with the soil inside. Not "
@@ -252,6 +253,8 @@ void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& dir
                      "without a bed.",
                      "survey"},
                     false);
+  origins.note_file(bed);
+  origins.note_file(beyond);
   in.one_form({{{"bed_m"}}, {{"bed_csv"}}, {{"ground_beyond_m"}}, {{"ground_beyond_csv"}}, {{}}});
   in.flag("closed", t.closed, {"The bed is a ring, its last vertex joined to its first.", "survey"});
   const auto given = [&](const char* key) { return in.find(key) != nullptr; };

@@ -5,6 +5,7 @@
 
 #include "case/sections.hpp"
 #include "math/angle.hpp"
+#include "simulation/checks.hpp"
 
 namespace talus {
 namespace {
@@ -136,7 +137,11 @@ void read_numerics(ObjectReader& in, Numerics& n) {
        "state is double in both.",
        "this program"});
   in.number("cfl", n.cfl, {"", 0.0, 1.0, true},
-            {"Courant number of the time step when fixed_step_s is not given.", "Monaghan 1992"});
+            {"Courant number of the time step when fixed_step_s is not given.",
+             "Monaghan 1992; limits: stability measured on slopes", "", "> 0 and <= 0.8, <= 0.4 with leapfrog"});
+  in.limit_by_choice("cfl", n.cfl, "integrator",
+                     {{"rk2", stable_cfl(Integrator::rk2)}, {"leapfrog", stable_cfl(Integrator::leapfrog)}},
+                     "measured on slopes, the deposit begins to shake a little above");
 }
 
 void read_walls(ObjectReader& in, Walls& w, Boundary& bed) {

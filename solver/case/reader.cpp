@@ -295,6 +295,22 @@ void ObjectReader::exclude(std::string_view key, std::string_view other) {
     fault(key, "is given beside " + std::string(other) + "; give one of the two");
 }
 
+void ObjectReader::limit_by_choice(std::string_view key, double value, std::string_view choice,
+                                   std::initializer_list<LimitOfWord> limits, std::string_view why) {
+  for (const LimitOfWord& limit : limits) {
+    const bool is_default = &limit == limits.begin();
+    if (describing_) {
+      Json beyond = {{"properties", {{choice, {{"enum", {limit.word}}}}, {key, {{"exclusiveMinimum", limit.most}}}}}};
+      beyond["required"].push_back(key);
+      if (!is_default) beyond["required"].push_back(choice);
+      schema_["not"]["anyOf"].push_back(std::move(beyond));
+    } else if (value > limit.most && resolved_[std::string(choice)] == limit.word) {
+      fault(key, to_text(value) + " is too large for " + std::string(choice) + " \"" + std::string(limit.word) +
+                     "\": allowed > 0 and <= " + to_text(limit.most) + "; " + std::string(why));
+    }
+  }
+}
+
 void ObjectReader::one_form(std::initializer_list<Form> forms) {
   if (!describing_) return;
   Json one = Json::array();

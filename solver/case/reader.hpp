@@ -129,6 +129,15 @@ class ObjectReader {
                const Json& fallback = nullptr, bool required = false);
   /// A fault if both keys are given.
   void exclude(std::string_view key, std::string_view other);
+  /// The largest value of a number while a choice is a certain word.
+  struct LimitOfWord {
+    std::string_view word;
+    double most;
+  };
+  /// A fault if the number `key` is above the limit of the word that `choice` is. The first word is the default.
+  /// @param why  the limit is what it is
+  void limit_by_choice(std::string_view key, double value, std::string_view choice,
+                       std::initializer_list<LimitOfWord> limits, std::string_view why);
   /// Declares that exactly one form is given; the caller checks it and words the faults.
   void one_form(std::initializer_list<Form> forms);
   /// From here on defaults are shown as these words, and no key is required.

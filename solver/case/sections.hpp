@@ -14,6 +14,12 @@ namespace talus {
 struct SourceLocations {
   Vertices bed;
   std::vector<Vertices> outlines;  ///< of each slide part
+  std::vector<std::string> files;  ///< CSV files with the form in which they were read
+
+  void note_file(const Vertices& v) {
+    if (!v.form.empty())
+      files.push_back(v.source + ": " + v.form + ", " + std::to_string(v.points.size()) + " vertices");
+  }
 };
 
 /// The whole case.
@@ -44,9 +50,9 @@ struct SlideInput {
 };
 SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, const MaterialInput& fallback);
 /// @param slide  for the default height of the end walls; @param dx  particle spacing [m]
-/// @param bed    returns where the bed's vertices are written
+/// @param origins  returns where the bed's vertices are written
 void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& directory, const SlideInput& slide,
-                  double dx, Vertices& bed);
+                  double dx, SourceLocations& origins);
 
 // read_statistics.cpp
 void read_field(ObjectReader& in, FieldSpec& spec);

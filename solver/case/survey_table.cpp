@@ -108,6 +108,7 @@ struct Heading {
 
 struct Columns {
   std::size_t x = 0, y = 1;
+  std::string x_name = "1", y_name = "2";
   std::size_t most = 2;  ///< cells that a row may have
 };
 
@@ -179,11 +180,13 @@ std::optional<Columns> choose_columns(const Table& table, LineFaults& found) {
       return {};
     }
     if (headings.both())
-      columns = {headings.x[0], headings.y[0], std::max(cells.size(), count)};
+      columns = {headings.x[0], headings.y[0], "", "", std::max(cells.size(), count)};
     else if (cells.size() == 2 && headings.some() && !headings.ambiguous())
       columns =
           headings.y.empty() ? Columns{headings.x[0], 1 - headings.x[0]} : Columns{1 - headings.y[0], headings.y[0]};
     named = headings.both() || (cells.size() == 2 && headings.some());
+    if (named) columns.x_name = in_quotes(cells[columns.x]);
+    if (named) columns.y_name = in_quotes(cells[columns.y]);
   }
   if (!named && count != 2) {
     found.add("columns", table.lines[table.first_row].number,
@@ -193,6 +196,15 @@ std::optional<Columns> choose_columns(const Table& table, LineFaults& found) {
   }
   if (refuse_other_units(table, columns, found)) return {};
   return columns;
+}
+
+std::string form_of(const Columns& columns, char separator, bool decimal_commas) {
+  const char* name = separator == ';'    ? "semicolons"
+                     : separator == '\t' ? "tabs"
+                     : separator == ' '  ? "blanks"
+                                         : "commas";
+  return "columns " + columns.x_name + " and " + columns.y_name + ", separated by " + name +
+         (decimal_commas ? ", decimal commas" : "");
 }
 
 }  // namespace
@@ -213,7 +225,7 @@ void LineFaults::report(Faults& faults) const {
   }
 }
 
-std::vector<SurveyRow> read_survey_table(std::string_view text, std::size_t most, LineFaults& found) {
+SurveyTable read_survey_table(std::string_view text, std::size_t most, LineFaults& found) {
   constexpr std::size_t most_headings = 1000;
   Table table{',', lines_of(text, most + most_headings)};
   const std::optional<char> separator = find_separator(table.lines);
@@ -255,7 +267,7 @@ std::vector<SurveyRow> read_survey_table(std::string_view text, std::size_t most
       found.add("decimals", line.number, "mixes decimal points and decimal commas, or has separators of thousands");
     rows.push_back(std::move(row));
   }
-  return rows;
+  return {std::move(rows), form_of(*columns, *separator, commas)};
 }
 
 }  // namespace talus

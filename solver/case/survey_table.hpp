@@ -36,6 +36,12 @@ struct SurveyRow {
   std::string x, y;
 };
 
+/// What was read of a table.
+struct SurveyTable {
+  std::vector<SurveyRow> rows;
+  std::string form;  ///< columns "chainage" and "elevation", separated by semicolons, decimal commas
+};
+
 /// The distance along the section and the elevation of every row, as text with a decimal point.
 /// - Separators: semicolon, tab, blanks or comma, whichever gives the most rows of numbers. Decimal commas are read
 ///   where the separator is another. Lines end with LF, CRLF or CR; blank lines and # comments are skipped.
@@ -44,6 +50,6 @@ struct SurveyRow {
 ///   elevation is there too. Two columns without names are x and y.
 /// @param most  rows that are read at most
 /// @param found returns what cannot be read; no rows then
-std::vector<SurveyRow> read_survey_table(std::string_view text, std::size_t most, LineFaults& found);
+SurveyTable read_survey_table(std::string_view text, std::size_t most, LineFaults& found);
 
 }  // namespace talus

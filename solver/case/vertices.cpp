@@ -159,7 +159,9 @@ std::string Vertices::location(std::size_t k) const {
 Vertices read_csv(std::string_view text, const std::string& name, Faults& faults) {
   Vertices out{{}, name};
   LineFaults found(name);
-  for (const SurveyRow& row : read_survey_table(decoded(text), most_vertices + 1, found)) {
+  const SurveyTable table = read_survey_table(decoded(text), most_vertices + 1, found);
+  out.form = table.form;
+  for (const SurveyRow& row : table.rows) {
     const auto x = read_coordinate(row.x, false, row.line, found);
     const auto y = x ? read_coordinate(row.y, true, row.line, found) : std::nullopt;
     if (!y) continue;

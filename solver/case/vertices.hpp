@@ -22,6 +22,7 @@ struct Vertices {
   std::vector<Vec2> points;     ///< [m]
   std::string source;           ///< JSON pointer of the list, or name of the CSV file
   std::vector<int> lines = {};  ///< CSV only: line of each vertex, counted from 1
+  std::string form = {};        ///< CSV only: columns, separator and decimals as they were read
 
   bool empty() const { return points.empty(); }
   /// "/terrain/bed_m/3", or "bed.csv:5"

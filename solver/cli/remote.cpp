@@ -3,10 +3,12 @@
 #include <httplib.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <random>
 
@@ -14,6 +16,7 @@
 #include "cli/help.hpp"
 #include "cli/progress.hpp"
 #include "cli/verbs.hpp"
+#include "run/warnings.hpp"
 #include "support/files.hpp"
 #include "support/text.hpp"
 
@@ -157,7 +160,8 @@ Exit watch(const RemoteOptions& options) {
 }
 
 Exit submit(const RemoteOptions& options) {
-  const LoadedCase loaded = load_case(options.case_file, options.overrides);  // files beside the case are put into it
+  LoadedCase loaded = load_case(options.case_file, options.overrides);  // files beside the case are put into it
+  std::ranges::move(warnings_before_run(loaded.value), std::back_inserter(loaded.warnings));
   print_warnings(loaded.warnings);
   Json inputs = {{"case", loaded.resolved}};
   if (options.realizations) inputs["realizations"] = *options.realizations;

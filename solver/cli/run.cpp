@@ -58,7 +58,17 @@ class ProgressLine {
   double next_ = 0.5;
 };
 
+/// "invalid: ..." and "doubtful: ...", a line for each reason, the worst first.
+std::string verdict_lines(const Quality& quality) {
+  std::string text;
+  for (const Verdict verdict : {Verdict::invalid, Verdict::doubtful})
+    for (const QualityReason& reason : quality.reasons)
+      if (reason.verdict == verdict) text += std::string(word(verdict)) + ": " + reason.message + "\n";
+  return text;
+}
+
 void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t seed) {
+  std::fputs(verdict_lines(r.quality).c_str(), stdout);
   std::printf("distances from x = %.10g m to the %s\n", axis.from, axis.to == SlidesTo::right ? "right" : "left");
   for (const Measure& measure : measure_table)
     std::printf("%-26s%10.3f %s%s\n", ((measure.front ? "front, " : "") + std::string(measure.label)).c_str(),
@@ -84,7 +94,6 @@ Exit run(const RunOptions& options) {
   if (options.study_worker && !die_with_parent()) return Exit::interrupted;
   const bool verbose = !options.json && !options.study_worker;
   LoadedCase loaded = load_case(options.case_file, options.overrides);
-  if (!options.study_worker) print_warnings(loaded.warnings);
   const double end = loaded.value.model.time.end;
   const std::uint64_t seed = choose_seed(options.seed, loaded, options.out);
 
@@ -94,7 +103,11 @@ Exit run(const RunOptions& options) {
   };
   const RunHooks hooks{.stop_requested = stop_requested,
                        .show_progress = [&](const Simulation& s, double elapsed) { progress.show(s, end, elapsed); },
-                       .continued = say_continued};
+                       .continued = say_continued,
+                       .warn =
+                           [&](const std::vector<Fault>& warnings) {
+                             if (!options.study_worker) print_warnings(warnings);
+                           }};
   catch_stop_signals(!options.study_worker);
   RunOutAxis axis = loaded.value.model.terrain.run_out;
   axis.from += loaded.value.model.terrain.origin.x;
@@ -116,9 +129,7 @@ Exit run(const RunOptions& options) {
   }
   if (options.json) std::cout << outcome.document;
   if (verbose) print_summary(outcome.result, axis, seed);
-  if (outcome.result.penetrated > 0 && !options.study_worker)
-    std::cerr << "warning: " << outcome.result.penetrated
-              << " particles were deeper than half a spacing in the ground: do not trust this run\n";
+  if (options.json && !options.study_worker) std::cerr << verdict_lines(outcome.result.quality);
   if (options.figures) draw_figures(options.out, plot_run);
   return Exit::ok;
 }

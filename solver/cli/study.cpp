@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -19,6 +20,7 @@
 #include "executor/slurm.hpp"
 #include "executor/slurm_batch.hpp"
 #include "figures/figures.hpp"
+#include "run/warnings.hpp"
 #include "study/run_study.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
@@ -141,6 +143,7 @@ Exit study(const StudyOptions& options) try {
   std::vector<std::string> overrides = options.overrides;
   if (options.realizations) overrides.push_back("study.realizations=" + std::to_string(*options.realizations));
   LoadedCase loaded = load_case(options.case_file, overrides);
+  std::ranges::move(warnings_before_run(loaded.value), std::back_inserter(loaded.warnings));
   print_warnings(loaded.warnings);
   const Plan plan = make_plan(loaded, choose_seed(options, loaded.value), version);
   loaded.resolved["study"]["seed"] = plan.seed;

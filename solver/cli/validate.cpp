@@ -1,8 +1,10 @@
 // talus validate CASE: all faults of a case, or what running it will take.
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -11,6 +13,7 @@
 #include "cli/verbs.hpp"
 #include "particles/geometry.hpp"
 #include "random_field/random_field.hpp"
+#include "run/warnings.hpp"
 #include "simulation/simulation.hpp"
 #include "support/json.hpp"
 #include "support/run_memory.hpp"
@@ -33,6 +36,7 @@ struct Demand {
   double memory = 0.0;  ///< [bytes]
   std::optional<double> captured_variance;
   std::size_t field_terms = 0;
+  std::vector<Fault> warnings;
 };
 
 Demand measure(const Case& c) {
@@ -49,16 +53,10 @@ Demand measure(const Case& c) {
     d.captured_variance = field.captured_variance();
     d.field_terms = field.terms();
   }
+  d.warnings = warnings_before_run(
+      c, plan,
+      {.captured_variance = d.captured_variance.value_or(1.0), .terms = static_cast<std::int64_t>(d.field_terms)});
   return d;
-}
-
-void warn_of_lost_variance(const Demand& d, std::vector<Fault>& warnings) {
-  if (!d.captured_variance || *d.captured_variance >= 0.5) return;
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "captures %.2g %% of the variance with %zu terms: most of the stated variability never enters the runs",
-                100.0 * *d.captured_variance, d.field_terms);
-  warnings.push_back({"/random_field", text});
 }
 
 Json to_json(const std::vector<Fault>& faults) {
@@ -68,6 +66,8 @@ Json to_json(const std::vector<Fault>& faults) {
 }
 
 void print_json(const Json& value) { std::cout << value.dump(2, ' ', false, Json::error_handler_t::replace) << "\n"; }
+
+const char* way(const RunOutAxis& axis) { return axis.to == SlidesTo::right ? "right" : "left"; }
 
 Json end_json(bool wall, Vec2 end, double wall_top) {
   Json out = {{"kind", wall ? "wall" : "open"}, {"x_m", end.x}, {"y_m", end.y}};
@@ -89,13 +89,13 @@ Json to_json(const GroundReport& r, const Terrain& terrain) {
   return out;
 }
 
-Json slide_json(const GroundReport& r, const Terrain& t, double dx) {
-  const Vec2 lo = r.slide.lo + t.origin, hi = r.slide.hi + t.origin;
-  return {{"x_m", {lo.x, hi.x}},
-          {"y_m", {lo.y, hi.y}},
+Json slide_json(const GroundReport& r, const Model& model) {
+  return {{"x_m", {r.slide.lo.x, r.slide.hi.x}},
+          {"y_m", {r.slide.lo.y, r.slide.hi.y}},
           {"thickness_m", r.thickness},
-          {"thickness_spacings", r.thickness / dx},
-          {"direction", t.run_out.to == SlidesTo::right ? "right" : "left"}};
+          {"thickness_spacings", r.thickness / model.dx},
+          {"slides_to", way(model.terrain.run_out)},
+          {"measured_from_m", model.terrain.run_out.from + model.terrain.origin.x}};
 }
 
 Json to_json(const LoadedCase& loaded, const Demand& d) {
@@ -109,8 +109,9 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
               {"mass_kg_m", {{"filled", d.mass.filled}, {"outline", d.mass.outline}}}};
   const Model& model = loaded.value.model;
   const GroundReport report = report_ground(loaded);
+  out["files"] = loaded.files;
   out["ground"] = to_json(report, model.terrain);
-  out["slide"] = slide_json(report, model.terrain, model.dx);
+  out["slide"] = slide_json(report, model);
   if (d.captured_variance) out["field"] = {{"terms", d.field_terms}, {"captured_variance", *d.captured_variance}};
   out["warnings"] = to_json(loaded.warnings);
   return out;
@@ -135,18 +136,19 @@ void print_ground(const GroundReport& r, const Model& model) {
   if (!t.closed) print_end("left end", t.left_wall, t.bed.front() + t.origin, t.wall_top + t.origin.y);
   if (!t.closed) print_end("right end", t.right_wall, t.bed.back() + t.origin, t.wall_top + t.origin.y);
   std::printf("slide              x = %.10g to %.10g m, y = %.10g to %.10g m, at most %.3g m thick (%.3g spacings)\n",
-              r.slide.lo.x + t.origin.x, r.slide.hi.x + t.origin.x, r.slide.lo.y + t.origin.y,
-              r.slide.hi.y + t.origin.y, r.thickness, r.thickness / model.dx);
-  std::printf("direction          to the %s, run-outs from x = %.10g m\n",
-              t.run_out.to == SlidesTo::right ? "right" : "left", t.run_out.from + t.origin.x);
+              r.slide.lo.x, r.slide.hi.x, r.slide.lo.y, r.slide.hi.y, r.thickness, r.thickness / model.dx);
 }
 
 void print_text(const LoadedCase& loaded, const Demand& d) {
   std::printf("%s\n", loaded.value.title.c_str());
+  for (const std::string& file : loaded.files) std::printf("file               %s\n", file.c_str());
   print_ground(report_ground(loaded), loaded.value.model);
   std::printf("particles          %zu soil + %zu wall\n", d.soil, d.wall);
   std::printf("mass               %.0f kg/m, %+.2f %% of the outlines'\n", d.mass.filled,
               std::round(1e4 * (d.mass.filled / d.mass.outline - 1.0)) / 100.0 + 0.0);
+  const RunOutAxis& axis = loaded.value.model.terrain.run_out;
+  std::printf("slides to          the %s; run-outs from x = %.10g m\n", way(axis),
+              axis.from + loaded.value.model.terrain.origin.x);
   std::printf("time step          %.3g s%s\n", d.step,
               loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");
   std::printf("steps              about %.0f to %.4g s\n", d.steps, loaded.value.model.time.end);
@@ -159,8 +161,8 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
 
 Exit validate(const ValidateOptions& options) try {
   LoadedCase loaded = load_case(options.case_file, options.overrides);
-  const Demand demand = measure(loaded.value);
-  warn_of_lost_variance(demand, loaded.warnings);
+  Demand demand = measure(loaded.value);
+  std::ranges::move(demand.warnings, std::back_inserter(loaded.warnings));
   options.json ? print_json(to_json(loaded, demand)) : print_text(loaded, demand);
   return Exit::ok;
 } catch (const ConfigError& e) {

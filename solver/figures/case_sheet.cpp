@@ -110,8 +110,11 @@ Sheet case_sheet(const LoadedCase& loaded, const GroundReport& report, const Sta
   sheet.place(panel);
   sheet.axes(
       {view.lo.x, view.hi.x, nice_step(view.width(), panel.width(), 90), axis_label("x", model.terrain.origin.x)},
-      {view.lo.y, view.hi.y, nice_step(view.height(), panel.height(), 50), axis_label("y", model.terrain.origin.y)});
-  sheet.script("set ylabel offset 1.6,0");
+      {view.lo.y, view.hi.y, nice_step(view.height(), panel.height(), 32), ""});
+  constexpr double label_column = 11;  // px from the left edge: beside the widest tic labels
+  sheet.script("set label ", literal(axis_label("y", model.terrain.origin.y)), " at screen ",
+               label_column / layout.canvas.width, ", screen ",
+               1 - 0.5 * (panel.top + panel.bottom) / layout.canvas.height, " center rotate by 90");
   sheet.script("set key at screen ", panel.left / layout.canvas.width, ", screen ",
                1 - (panel.top - 0.5 * key_row) / layout.canvas.height,
                " left center horizontal Left reverse samplen 2 noautotitle font 'sans-serif,10' textcolor rgb '", ink,

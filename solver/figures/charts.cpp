@@ -62,7 +62,7 @@ Axis means_axis(const Rows& rows) {
 }  // namespace
 
 Sheet chart(const StudyFiles& study, std::string_view subtitle, const Canvas& canvas) {
-  return {canvas, {study.title, std::string(subtitle), study.source + "  ·  " + count_text(study)}};
+  return {canvas, {study.title, std::string(subtitle), study.source + "  ·  " + count_text(study), study.quality}};
 }
 
 std::string count_text(const StudyFiles& study) {
@@ -149,14 +149,14 @@ Sheet friction_angle_sheet(const StudyFiles& study) {
 }
 
 Sheet spread_sheet(const StudyFiles& study) {
-  constexpr Panel panel{190, 812, 84, 440};
+  constexpr Panel panel{190, 812, 104, 460};
   // The axis has one unit, that of the first measure.
   const auto on_axis = [](const Measure& m) { return std::string_view(m.unit) == measure_table[0].unit; };
   const auto measures = static_cast<double>(std::ranges::count_if(measure_table, on_axis));
-  Sheet sheet = chart(study, "Standard deviation from soil variability, compared with the numerical noise", {900, 520});
+  Sheet sheet = chart(study, "Standard deviation from soil variability, compared with the numerical noise", {900, 540});
   const auto legend = [&sheet](double x, const char* colour, const char* name) {
-    sheet.text(x, 72, "■", {.colour = colour});
-    sheet.text(x + 16, 72, name);
+    sheet.text(x, 92, "■", {.colour = colour});
+    sheet.text(x + 16, 92, name);
   };
   legend(panel.left, blue, "standard deviation, 95 % interval");
   legend(panel.left + 260, vermillion, "numerical noise");

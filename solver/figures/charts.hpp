@@ -28,7 +28,7 @@ Sheet friction_angle_sheet(const StudyFiles& study);
 /// Standard deviation of every measure beside its numerical noise.
 Sheet spread_sheet(const StudyFiles& study);
 
-/// An empty chart: the study's title, `subtitle`, its source and its number of realizations.
+/// An empty chart: the study's title, `subtitle`, what makes it doubtful, its source and its number of realizations.
 Sheet chart(const StudyFiles& study, std::string_view subtitle, const Canvas& canvas = {900, 576});
 
 /// "200 realizations" or "198 of 200 realizations done, 2 failed".

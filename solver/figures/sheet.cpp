@@ -119,6 +119,7 @@ Sheet::Sheet(const Canvas& size, const Stamps& stamps, double reserved) : canvas
   const double room = canvas.width - 2 * side_margin;
   text(side_margin, 26, fitted(stamps.title, room - reserved, px_bold), {.points = 12, .bold = true});
   text(side_margin, 50, fitted(stamps.subtitle, room, px_text), {.colour = faint});
+  text(side_margin, 70, fitted(stamps.note, room, px_text), {.colour = vermillion});
   text(side_margin, canvas.height - 13, fitted(stamps.source, room, px_small), {.points = 8, .colour = faint});
   script("set multiplot");
 }

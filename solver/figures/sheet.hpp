@@ -82,9 +82,10 @@ struct Panel {
 
 /// What a figure says about itself.
 struct Stamps {
-  std::string title;     ///< bold, upper left
-  std::string subtitle;  ///< beneath it
-  std::string source;    ///< small, lower left: case, version, seed, realization
+  std::string title;      ///< bold, upper left
+  std::string subtitle;   ///< beneath it
+  std::string source;     ///< small, lower left: case, version, seed, realization
+  std::string note = {};  ///< beneath the subtitle, in vermillion: what makes the figure doubtful
 };
 
 /// An axis of a plot: what it shows and where its tics are.

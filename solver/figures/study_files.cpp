@@ -1,6 +1,7 @@
 #include "figures/study_files.hpp"
 
 #include "study/publish.hpp"
+#include "study/quality_summary.hpp"
 #include "support/error.hpp"
 #include "support/json.hpp"
 
@@ -55,6 +56,7 @@ StudyFiles read_summary(const Json& study) {
   files.planned = realizations.at("planned");
   files.done = realizations.at("done");
   files.failed = realizations.at("failed");
+  if (study.contains("quality")) files.quality = quality_line(study.at("quality"));  // version 0.1.0 does not write it
   for (const auto& [key, node] : study.at("quantities").items()) files.quantities[key] = read_quantity(node);
   if (!files.quantities.contains("influence_zone_m")) throw IoError("quantities.influence_zone_m is missing");
   return files;

@@ -41,6 +41,7 @@ struct StudyFiles {
   std::int64_t planned = 0;
   std::int64_t done = 0;
   std::int64_t failed = 0;
+  std::string quality;                         ///< quality_line() of the study; empty where there is nothing to say
   std::map<std::string, Quantity> quantities;  ///< by key: "influence_zone_m"
   std::vector<Done> realizations;              ///< in order of index
 

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "io/checkpoint.hpp"
 #include "io/result_json.hpp"
 #include "run/recorder.hpp"
 #include "run/thread_choice.hpp"
+#include "run/warnings.hpp"
 #include "support/error.hpp"
 #include "support/files.hpp"
 #include "support/output_directory.hpp"
@@ -31,14 +33,6 @@ std::string utc_now() {
   char text[32];
   std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
   return text;
-}
-
-/// Of the axes along which the field varies [m]; unset where it does not vary, or is averaged over cells.
-std::optional<double> shortest_correlation(const std::optional<FieldSpec>& field, const std::vector<double>& xi) {
-  if (!field || field->cell_average || field->sigma == 0.0) return std::nullopt;
-  if (std::ranges::all_of(xi, [](double x) { return x == 0.0; })) return std::nullopt;
-  if (!field->along_y()) return field->ell_x;
-  return field->along_x() ? std::min(field->ell_x, field->ell_y) : field->ell_y;
 }
 
 /// The finished run of a directory, if it is the one that is asked for.
@@ -93,6 +87,8 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
       throw IoError(out.path().string() + " holds a run that came to rest before its end, t = " +
                     to_text(out.earlier_end()) + " s: there is nothing to continue");
   }
+  std::ranges::move(warnings_before_run(problem, plan, soil.summary), std::back_inserter(loaded.warnings));
+  hooks.warn(loaded.warnings);
   Simulation simulation(problem.model, plan, soil.properties);
   if (resumed) {
     const CheckpointState state = read_checkpoint(checkpoint_file, header);
@@ -142,10 +138,13 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
   outcome.result.wall_clock = earlier + elapsed();
   outcome.result.threads = threads.most_used();
   outcome.result.field = soil.summary;
+  outcome.result.warnings = std::move(loaded.warnings);
   RunFacts facts = simulation.facts();
-  facts.correlation_length = shortest_correlation(problem.field, soil.xi);
+  facts.energy = outcome.result.energy;
+  // With all coefficients zero, as in the median run, the field is uniform.
+  if (std::ranges::any_of(soil.xi, [](double xi) { return xi != 0.0; }))
+    facts.correlation_length = shortest_correlation(problem.field);
   outcome.result.quality = assess(facts);
-  outcome.result.warnings = loaded.warnings;
   outcome.document = result_json(outcome.result, provenance).dump(2) + "\n";
   write_file_atomically(out.path() / "result.json", outcome.document);
   const bool moves = outcome.result.ending == Ending::end_time && !outcome.result.at_rest;

@@ -30,6 +30,7 @@ struct RunHooks {
   std::function<bool()> stop_requested;  ///< true: write a checkpoint and return
   std::function<void(const Simulation& simulation, double elapsed_s)> show_progress;
   std::function<void(double time_s)> continued = [](double) {};  ///< called once, if it goes on from a checkpoint
+  std::function<void(const std::vector<Fault>&)> warn = [](const auto&) {};  ///< called once, before the first step
 };
 
 /// How a call of run_realization ended.

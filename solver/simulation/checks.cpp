@@ -1,9 +1,10 @@
 #include "simulation/checks.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
+#include "simulation/particle_setup.hpp"
 #include "support/text.hpp"
 
 namespace talus {
@@ -12,113 +13,126 @@ namespace {
 /// A check objects where its value is beyond a limit.
 struct Check {
   const char* key;
-  std::optional<double> (*value)(const RunFacts&);
-  double doubtful;                ///< limit, itself allowed
-  std::optional<double> invalid;  ///< a further limit; unset: the check never makes a run invalid
+  std::optional<double> (*value)(const RunFacts&);  ///< unset: nothing to check
+  double doubtful;                                  ///< the last value that is allowed
+  std::optional<double> invalid;                    ///< a further limit; unset: the check makes no run invalid
   std::string (*message)(const RunFacts&, double value);
   bool below = false;  ///< it objects to values below the limit
 };
 
+using Value = std::optional<double>;
+
 std::string percent(double share) { return rounded(100.0 * share) + " %"; }
-std::string of_particles(std::int64_t n, const RunFacts& f) {
+double share(std::int64_t n, const RunFacts& f) { return static_cast<double>(n) / static_cast<double>(f.soil); }
+std::string particles(std::int64_t n, const RunFacts& f) {
   return std::to_string(n) + " of " + std::to_string(f.soil) + " particles";
 }
-double share(std::int64_t n, const RunFacts& f) { return static_cast<double>(n) / static_cast<double>(f.soil); }
+
+/// What gravity gave [J/m]. A slide that hardly moves is compared with a fall by one spacing, below which the method
+/// resolves nothing.
+double gravity_work(const RunFacts& f) { return std::max(f.energy.gravity_work(), f.weight * f.dx); }
 
 constexpr Check checks[] = {
-    // A stable run explains what gravity gave to well below 1 %; of runs that created more than 10 % the fronts are
-    // wrong by metres.
-    {"energy_created", [](const RunFacts& f) { return std::optional(f.created_share); }, 0.01, 0.10,
+    // Stable runs of all trials create less than 0.9 % of gravity's work; unstable ones, whose fronts are wrong by
+    // metres, 16 % and more.
+    // Walls that act on approaching particles only ([Z20]) switch on and off, which creates energy at every switch; it
+    // is
+    // a property of that method, which a case must ask for.
+    {"energy_created",
+     [](const RunFacts& f) { return f.steady_contact ? Value(f.energy.created() / gravity_work(f)) : Value(); }, 0.01,
+     0.1,
      [](const RunFacts&, double x) {
-       return "energy equal to " + percent(x) + " of gravity's work was created by the numerical method";
+       return "the numerical method created energy equal to " + percent(x) + " of gravity's work";
      }},
-    // Density varies as Mach^2: 0.2 is 4 %, four times what a speed of sound of ten times the fastest fall gives
-    // (Monaghan 1994). At 1 pressure waves are slower than the soil.
-    {"mach_number", [](const RunFacts& f) { return std::optional(f.mach); }, 0.2, 1.0,
+    // Density varies as the square of the Mach number: at 0.2 by 4 %, four times as much as with a speed of sound of
+    // ten
+    // times the fastest fall (Monaghan 1994). A run at 0.7 went twice as far.
+    {"mach_number", [](const RunFacts& f) { return Value(f.mach); }, 0.2, 0.5,
      [](const RunFacts&, double x) {
-       return "the fastest particle had " + rounded(x) +
-              " times the speed of sound of the model (numerics.sound_speed_m_s)";
+       return "the fastest particle reached " + rounded(x) + " times the speed of sound (numerics.sound_speed_m_s)";
      }},
-    {"compression",
-     [](const RunFacts& f) { return std::optional(f.density_rise); },
-     0.05,
-     {},
-     [](const RunFacts&, double x) {
-       return "soil was compressed to " + percent(x) + " above its density, which soil is not";
-     }},
-    // One particle is enough to doubt the ground, but does not move a front; beyond 1 % mass is missing.
-    {"particles_in_ground", [](const RunFacts& f) { return std::optional(share(f.penetrated, f)); }, 0.0, 0.01,
+    // Sound runs stay below 4.2 %, impacts below a cliff included. A run at 9 % went 12 % too far, one at 30 % twice as
+    // far.
+    {"compression", [](const RunFacts& f) { return Value(f.density_rise); }, 0.05, 0.2,
+     [](const RunFacts&, double x) { return "soil was compressed to " + percent(x) + " above its density"; }},
+    // One particle says that the ground leaks, but moves no front; more than 1 % is mass that is missing.
+    {"particles_in_ground", [](const RunFacts& f) { return Value(share(f.penetrated, f)); }, 0.0, 0.01,
      [](const RunFacts& f, double) {
-       return of_particles(f.penetrated, f) + " were deeper than half a spacing in the ground";
+       return particles(f.penetrated, f) + " were deeper than half a spacing in the ground";
      }},
     {"left_terrain",
-     [](const RunFacts& f) { return std::optional(share(f.left_domain, f)); },
+     [](const RunFacts& f) { return Value(share(f.left_domain, f)); },
      0.0,
      {},
      [](const RunFacts& f, double) {
-       return of_particles(f.left_domain, f) + " left through an open end of the bed, so fronts end where the bed ends";
+       return particles(f.left_domain, f) +
+              " left through an open end of the bed, so the run-out ends where the bed ends";
      }},
     {"front_at_open_end",
-     [](const RunFacts& f) { return std::optional(share(f.at_open_end, f)); },
+     [](const RunFacts& f) { return Value(share(f.at_open_end, f)); },
      0.0,
      {},
      [](const RunFacts& f, double) {
-       return of_particles(f.at_open_end, f) + " came to within a spacing of an open end of the bed";
+       return particles(f.at_open_end, f) + " lie within a spacing of an open end of the bed";
      }},
-    // The bulk: a hundredth of the speed scale of the fall. The front: as far as its fastest soil slides on friction.
+    // A hundredth of the speed scale of the fall: the front of a trial that ended at 3 % was 0.2 % short.
     {"still_moving",
      [](const RunFacts& f) { return f.rms_speed; },
      0.01,
      {},
      [](const RunFacts& f, double x) {
-       return "the slide moved at " + percent(x) +
-              " of the speed scale sqrt(g H) when the run ended at t = " + to_text(f.time) +
+       return "the slide moved at " + percent(x) + " of sqrt(g H) when the run ended at t = " + to_text(f.time) +
               " s, so its run-out is not final";
      }},
+    // As far as the fastest soil near the front slides on friction, in spacings.
     {"front_still_moving",
-     [](const RunFacts& f) { return f.run_on ? std::optional(*f.run_on / f.dx) : std::nullopt; },
+     [](const RunFacts& f) { return f.run_on ? Value(*f.run_on / f.dx) : Value(); },
      1.0,
      {},
      [](const RunFacts& f, double) {
-       return "at the speed it had when the run ended at t = " + to_text(f.time) + " s the front advances by another " +
-              rounded(*f.run_on) + " m";
+       return "when the run ended at t = " + to_text(f.time) + " s single particles could slide " + rounded(*f.run_on) +
+              " m beyond the front";
      }},
+    // A slide of 5 rows went as far as one of 10, to 1 %; one of 4 rows went a quarter of its way.
     {"few_particles_across",
      [](const RunFacts& f) { return f.rows; },
      5.0,
      {},
-     [](const RunFacts&, double x) { return "the slide is " + rounded(x) + " particles thick, at least 5 are needed"; },
-     true},
-    // The value at the centre of a cell does not stand for a cell across which the field decorrelates.
-    {"short_correlation_length",
-     [](const RunFacts& f) {
-       return f.correlation_length ? std::optional(*f.correlation_length / f.dx) : std::nullopt;
+     [](const RunFacts&, double x) {
+       return "the slide is " + rounded(x) + " particles thick at most, where 5 are needed";
      },
+     true},
+    // A value at the centre of a particle does not stand for its cell, across which the field decorrelates.
+    {"short_correlation_length",
+     [](const RunFacts& f) { return f.correlation_length ? Value(*f.correlation_length / f.dx) : Value(); },
      1.0,
      {},
      [](const RunFacts& f, double) {
        return "the correlation length of " + rounded(*f.correlation_length) + " m is below the particle spacing of " +
-              rounded(f.dx) + " m (random_field.cell_average)";
+              rounded(f.dx) + " m";
      },
      true},
-    {"time_step",
-     [](const RunFacts& f) { return f.courant ? std::optional(*f.courant / f.courant_limit) : std::nullopt; },
+    {"unstable_time_step",
+     [](const RunFacts& f) { return f.courant ? Value(*f.courant / f.courant_limit) : Value(); },
      1.0,
      {},
      [](const RunFacts& f, double) {
-       return "time.fixed_step_s has the Courant number " + rounded(*f.courant) + ", the integrator is stable up to " +
-              rounded(f.courant_limit);
+       return "the fixed time step has the Courant number " + rounded(*f.courant) +
+              ", where the integrator is stable up to " + rounded(f.courant_limit);
      }},
 };
 
-bool beyond(const Check& check, double value, double limit) { return check.below ? value < limit : !(value <= limit); }
+/// Not a number is beyond every limit.
+bool beyond(const Check& check, double value, double limit) {
+  return check.below ? !(value >= limit) : !(value <= limit);
+}
 
 }  // namespace
 
 Quality assess(const RunFacts& facts) {
   Quality quality{.verdict = Verdict::sound};
   for (const Check& check : checks) {
-    const std::optional<double> value = check.value(facts);
+    const Value value = check.value(facts);
     if (!value || !beyond(check, *value, check.doubtful)) continue;
     const bool invalid = check.invalid && beyond(check, *value, *check.invalid);
     const Verdict verdict = invalid ? Verdict::invalid : Verdict::doubtful;
@@ -130,6 +144,18 @@ Quality assess(const RunFacts& facts) {
     quality.verdict = std::max(quality.verdict, verdict);
   }
   return quality;
+}
+
+RunFacts facts_before_run(const Model& model, std::span<const Vec2> starts) {
+  RunFacts facts;
+  facts.soil = static_cast<std::int64_t>(starts.size());
+  facts.dx = model.dx;
+  facts.steady_contact = model.walls.contact == WallContact::always;
+  facts.rows = rows_across(starts, model.dx);
+  const StepBounds bounds = step_bounds(model, flow_constants(model));
+  if (model.time.fixed_step) facts.courant = *model.time.fixed_step * bounds.c / bounds.h;
+  facts.courant_limit = stable_cfl(model.numerics.integrator);
+  return facts;
 }
 
 double rows_across(std::span<const Vec2> points, double dx) {

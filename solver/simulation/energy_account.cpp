@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "material/equation_of_state.hpp"
-#include "math/tensor-inl.hpp"
+#include "sph/continuity-inl.hpp"
 
 namespace talus {
 namespace {
@@ -24,10 +24,13 @@ double compression_of(const FlowConstants& k, const Soil& soil, std::size_t i) {
   return cut ? 0.0 : soil.m[i] * eos.energy(soil.rho[i]);
 }
 
-/// V t:t/(4 G), t the elastic deviatoric stress [J/m].
+/// V t:t/(4 G), t the elastic deviatoric stress, V the volume that the pair sums use [J/m].
 double distortion_of(const FlowConstants& k, const Soil& soil, std::size_t i) {
+  using namespace HWY_NAMESPACE;
+  const ConstitutiveParameters& of = parameters(k, soil, i);
   const Deviator<double> t{soil.txx[i], soil.tyy[i], soil.txy[i]};
-  return soil.m[i] / soil.rho[i] * HWY_NAMESPACE::double_dot(t) / (4.0 * parameters(k, soil, i).G);
+  const double V = soil.m[i] / pair_density(soil.rho[i], least_density(of.eos.rho0));
+  return V * double_dot(t) / (4.0 * of.G);
 }
 
 double kinetic_of(const Soil& soil, std::size_t i) { return 0.5 * soil.m[i] * norm2(soil.velocity(i)); }

@@ -99,7 +99,15 @@ double kinetic_energy(const Soil& soil) {
   return energy;
 }
 
-double rms_speed(const Soil& soil) { return std::sqrt(2.0 * kinetic_energy(soil) / total_mass(soil)); }
+double rms_speed(const Soil& soil) {
+  double energy = 0.0, mass = 0.0;
+  for (const auto i : by_id(soil)) {
+    if (i >= soil.n_active) continue;
+    energy += 0.5 * soil.m[i] * norm2(soil.velocity(i));
+    mass += soil.m[i];
+  }
+  return mass > 0.0 ? std::sqrt(2.0 * energy / mass) : 0.0;
+}
 
 double max_speed(const Soil& soil) {
   double v2 = 0.0;

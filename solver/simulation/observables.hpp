@@ -21,7 +21,7 @@ double total_mass(const Soil& soil);
 Vec2 centre_of_mass(const Soil& soil);
 /// sum m v^2 / 2 [J/m].
 double kinetic_energy(const Soil& soil);
-/// sqrt(2 E/M) [m/s].
+/// sqrt(2 E/M) of the active soil; 0 without any [m/s].
 double rms_speed(const Soil& soil);
 /// max |v| over the active soil [m/s].
 double max_speed(const Soil& soil);

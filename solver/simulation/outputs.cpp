@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "simulation/observables.hpp"
 #include "simulation/simulation.hpp"
@@ -99,26 +100,23 @@ std::int64_t Simulation::at_open_end() const {
 }
 
 RunFacts Simulation::facts() const {
-  RunFacts f;
+  std::vector<Vec2> starts;
+  for (std::size_t id = 0; id < soil_.size(); ++id) starts.push_back(starts_[static_cast<std::int32_t>(id)]);
+  RunFacts f = facts_before_run(model_, starts);
+  f.weight = std::accumulate(soil_.m.begin(), soil_.m.end(), 0.0) * norm(model_.g);
   f.mach = peak_speed_ / constants().c_s;
   f.density_rise = std::max(peak_density_rise_, density_rise());
-  f.soil = static_cast<std::int64_t>(soil_.size());
   f.penetrated = contact_.lost();
   f.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
   f.at_open_end = at_open_end();
-  f.dx = model_.dx;
   f.time = time_;
-  const bool has_strength = std::ranges::any_of(soil_.tan_phi, [](double t) { return t > 0.0; }) ||
-                            std::ranges::any_of(soil_.c, [](double c) { return c > 0.0; });
-  if (has_strength) {  // otherwise it never comes to rest
+  const auto any_positive = [](const auto& values) {
+    return std::ranges::any_of(values, [](double x) { return x > 0.0; });
+  };
+  if (any_positive(soil_.tan_phi) || any_positive(soil_.c)) {  // otherwise it never comes to rest
     f.rms_speed = rms_speed(soil_) / std::sqrt(norm(model_.g) * fall_height(model_));
     f.run_on = run_on();
   }
-  std::vector<Vec2> starts;
-  for (std::size_t id = 0; id < soil_.size(); ++id) starts.push_back(starts_[static_cast<std::int32_t>(id)]);
-  f.rows = rows_across(starts, model_.dx);
-  if (model_.time.fixed_step) f.courant = *model_.time.fixed_step * bounds_.c / bounds_.h;
-  f.courant_limit = courant_limit(model_.numerics.integrator);
   return f;
 }
 

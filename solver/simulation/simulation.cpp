@@ -104,8 +104,7 @@ void Simulation::report_divergence() const {
   const Vec2 start = starts_[first] + model_.terrain.origin;
   throw DivergedError("the run diverged at step " + std::to_string(steps_) + ", time " + std::to_string(time_) +
                           " s: particle " + std::to_string(first) + ", which started at (" + std::to_string(start.x) +
-                          ", " + std::to_string(start.y) +
-                          ") m, is no longer finite or faster than 10 times sound; try a smaller time step",
+                          ", " + std::to_string(start.y) + ") m, is no longer finite or faster than 10 times sound",
                       steps_, time_, first);
 }
 

@@ -45,6 +45,8 @@ struct SoilPoint {
   }
   double q() const { return soil.rho[i] / parameters(i).eos.rho0 - 1.0; }
   double c() const { return soil.c[i]; }
+  double density() const { return pair_density(soil.rho[i], least_density(parameters(i).eos.rho0)); }
+  double volume() const { return soil.m[i] / density(); }
   template <class Get>
   double constant(Get&& get) const {
     return get(parameters(i));
@@ -63,7 +65,7 @@ struct SoilPoint {
   template <class Of>
   void set_powers(Of&& of) const {
     if (!powers) return;
-    const StressPowers<double> values = of(soil.m[i] / soil.rho[i]);
+    const StressPowers<double> values = of(volume());
     powers->deviator[i] = values.deviator;
     powers->viscosity[i] = values.viscosity;
     powers->density_diffusion[i] = values.density_diffusion;
@@ -103,10 +105,8 @@ struct Passes {
     return {vector(walls.normal(j)), walls.depth[j], boundary(j).slip == WallSlip::free_slip};
   }
   double q(std::size_t j) const { return SoilPoint{k, soil, nullptr, j}.q(); }
-  double density(std::size_t j) const {
-    return pair_density(soil.rho[j], least_density(SoilPoint{k, soil, nullptr, j}.parameters(j).eos.rho0));
-  }
-  double volume(std::size_t j) const { return soil.m[j] / density(j); }
+  double density(std::size_t j) const { return SoilPoint{k, soil, nullptr, j}.density(); }
+  double volume(std::size_t j) const { return SoilPoint{k, soil, nullptr, j}.volume(); }
 
   template <class Model>
   void update_stress(std::size_t i) const {
@@ -179,7 +179,7 @@ struct Passes {
     soil.ax[i] = a.x;
     soil.ay[i] = a.y;
     if (!powers) return;
-    const double V_to_F = -sigma * soil.m[i] / rho_i;
+    const double V_to_F = -sigma * volume(i);
     powers->artificial_viscosity[i] = pair_powers.taken_by_viscosity(V_to_F);
     powers->boundaries[i] = pair_powers.taken_by_boundaries(V_to_F);
   }

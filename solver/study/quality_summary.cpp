@@ -65,26 +65,24 @@ Json QualitySummary::json(const SampleMoments& runout, const SampleMoments& nois
 }
 
 std::string quality_line(const Json& quality) {
-  const auto count = [&](Verdict verdict) { return quality.at(word(verdict)).get<std::int64_t>(); };
+  const auto append = [](std::string& list, const std::string& item) { list += (list.empty() ? "" : ", ") + item; };
   std::int64_t runs = 0;
   for (const char* verdict : verdict_words) runs += quality.at(verdict).get<std::int64_t>();
-  std::string line;
+  std::string verdicts, why;
   for (const Verdict verdict : {Verdict::doubtful, Verdict::invalid, Verdict::not_assessed}) {
-    if (count(verdict) == 0) continue;
-    line += line.empty() ? std::to_string(count(verdict)) + " of " + std::to_string(runs) + " runs "
-                         : ", " + std::to_string(count(verdict)) + " ";
-    line += words_of_check(word(verdict));
+    const auto count = quality.at(word(verdict)).get<std::int64_t>();
+    if (count == 0) continue;
+    const std::string of_all = verdicts.empty() ? " of " + std::to_string(runs) + " runs " : " ";
+    append(verdicts, std::to_string(count) + of_all + words_of_check(word(verdict)));
   }
-  std::string why;
   for (const Json& reason : quality.at("reasons")) {
     const auto check = reason.at("check").get<std::string>();
-    if (check == noise_check)
-      line += (line.empty() ? "" : ", ") + std::string("the study doubtful");
-    else
-      why += (why.empty() ? "" : ", ") + reason.at("runs").dump() + " " + words_of_check(check);
-    if (check == noise_check) why += (why.empty() ? "" : ", ") + reason.at("example").get<std::string>();
+    const bool of_study = check == noise_check;
+    if (of_study) append(verdicts, "study doubtful");
+    append(why, of_study ? reason.at("example").get<std::string>()
+                         : std::to_string(reason.at("runs").get<std::int64_t>()) + " " + words_of_check(check));
   }
-  return why.empty() ? line : line + ": " + why;
+  return why.empty() ? verdicts : verdicts + ": " + why;
 }
 
 }  // namespace talus

@@ -55,13 +55,16 @@ TEST(Validate, SaysWhatWasMadeOfTheGround) {
         talus("validate --json " + std::string(TALUS_SOURCE_DIR) + "/solver/cases/" + name + ".json" + set).out);
   };
   const auto road = report("road-slope");
+  EXPECT_EQ(road["files"][0],
+            "road-slope-ground.csv: columns \"chainage_m\" and \"elevation_m\", separated by commas, 21 vertices");
+  EXPECT_EQ(road["files"].size(), 2u);
   EXPECT_EQ(road["ground"]["source"], "the bed joined from the surfaces of the slide");
   EXPECT_EQ(road["ground"]["vertices"], (nlohmann::json{{"given", 23}, {"kept", 23}}));
   EXPECT_EQ(road["ground"]["moved_m"], 0.0);
   EXPECT_EQ(road["ground"]["left_end"]["kind"], "wall");
   EXPECT_EQ(road["ground"]["right_end"], (nlohmann::json{{"kind", "open"}, {"x_m", 95.0}, {"y_m", 8.1}}));
   EXPECT_EQ(road["slide"]["x_m"], (nlohmann::json{8.0, 35.0}));
-  EXPECT_EQ(road["slide"]["direction"], "right");
+  EXPECT_EQ(road["slide"]["slides_to"], "right");
   EXPECT_NEAR(road["slide"]["thickness_m"].get<double>(), 6.8, 0.3);
   const auto coarse = report("road-slope", " --set particle_spacing_m=3");
   EXPECT_LT(coarse["ground"]["vertices"]["kept"], 23) << "vertices nearer than the spacing are taken out";

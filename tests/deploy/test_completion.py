@@ -70,7 +70,8 @@ class Completion(unittest.TestCase):
         with tempfile.TemporaryDirectory() as here:
             (pathlib.Path(here) / "study").mkdir()
             (pathlib.Path(here) / "study.json").touch()
-            self.assertEqual(complete(TALUS, "plot", "st", cwd=here), ["study"])
+            self.assertEqual(complete(TALUS, "profile", "st", cwd=here), ["study"])
+            self.assertEqual(sorted(complete(TALUS, "plot", "st", cwd=here)), ["study", "study.json"])
             self.assertEqual(complete(TALUS, "stud", cwd=here), ["study"])
         self.assertEqual(complete(TALUS, "schema", ""), ["case", "result", "study"])
         self.assertEqual(complete(TALUS, "bench", "--yields", "e"), ["elastic"])

@@ -8,7 +8,7 @@ import subprocess
 import threading
 import time
 
-from daemon import TALUS, ServiceTest, digests, main, study
+from daemon import SOURCE, TALUS, ServiceTest, digests, main, study
 
 
 class Ours(ServiceTest):
@@ -68,6 +68,30 @@ class Ours(ServiceTest):
         rest = self.daemon.get(page["links"][0]["href"]).json
         self.assertEqual([r["index"] for r in page["realizations"] + rest["realizations"]], [0, 1, 2])
         self.assertEqual(self.daemon.get(f"/jobs/{job}/realizations?state=failed").json["realizations"], [])
+
+    def test_the_verdicts_of_the_runs_are_told_everywhere(self):
+        small = json.loads((SOURCE / "tests/solver/cli/trials/small-slope.json").read_text())
+        job = self.daemon.submit({"inputs": {"case": {**small, "time": {"end_s": 1}}, "realizations": 4, "seed": 5}})
+        info = self.daemon.wait_for(job)
+        counts = {"sound": 0, "doubtful": 4, "invalid": 0, "not_assessed": 0}
+        self.assertEqual(info["quality"], counts)
+        self.assertIn("4 of 4 runs doubtful: 4 still moving", info["message"])
+        self.assertEqual(self.daemon.get(f"/jobs/{job}/histogram").json["quality"], counts)
+        summary = self.daemon.get(f"/jobs/{job}/results").json["summary"]["value"]
+        self.assertEqual(summary["quality"]["doubtful"], 4)
+        self.assertEqual(summary["quality"]["reasons"][0]["check"], "still_moving")
+        run = self.daemon.get(f"/jobs/{job}/realizations/1").json
+        self.assertEqual(run["verdict"], "doubtful")
+        self.assertTrue(run["verdict_reasons"].startswith("still_moving: the slide moved at"), run)
+
+        slow_sound = {**small, "time": {"end_s": 2}, "numerics": {"sound_speed_m_s": 5}}
+        job = self.daemon.submit({"inputs": {"case": slow_sound, "realizations": 2, "seed": 5}})
+        info = self.daemon.wait_for(job)
+        self.assertEqual((info["status"], info["realizations"]["failed"], info["quality"]["invalid"]), ("failed", 2, 2))
+        self.assertIn("2 of 2 runs invalid: ", info["message"])
+        run = self.daemon.get(f"/jobs/{job}/realizations/0").json
+        self.assertEqual((run["state"], run["verdict"]), ("failed", "invalid"))
+        self.assertEqual(run["reason"], "invalid result: " + run["verdict_reasons"])
 
     def test_field_and_profile(self):
         job = self.daemon.submit(study(1))

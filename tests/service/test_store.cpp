@@ -522,6 +522,31 @@ TEST_F(StoreTest, ADatabaseFromBeforeLevelsIsMigrated) {
   EXPECT_FALSE(SQLite::Statement(raw, "PRAGMA foreign_key_check(runs)").executeStep());
 }
 
+TEST_F(StoreTest, VerdictsAreCounted) {
+  add("one", 5, 1);
+  const auto end_run = [&](Verdict verdict, const std::string& objections) {
+    Record record = result(7.5);
+    record.verdict = verdict;
+    record.objections = objections;
+    ASSERT_TRUE(store->accept(*store->claim(), record));
+  };
+  end_run(Verdict::doubtful, "left_terrain: 3 of 5");  // realization 0
+  end_run(Verdict::doubtful, "replicates do not count");
+  end_run(Verdict::sound, "");
+  end_run(Verdict::not_assessed, "");
+  ASSERT_TRUE(store->fail(*store->claim(), {.reason = reason_of_invalid("mach_number: 0.7 times")}));
+  ASSERT_TRUE(store->fail(*store->claim(), {.reason = "diverged"}));
+  const QualityCounts expected{.sound = 1, .doubtful = 1, .invalid = 1, .not_assessed = 1};
+  EXPECT_EQ(job("one").quality, expected);
+  EXPECT_EQ(store->measure_sample(job("one"), measure_table[0], {}).quality, expected);
+  EXPECT_EQ(store->measure_sample(job("one"), measure_table[0], 1e-9).quality, expected);
+  const std::vector<std::string> rows = table_of(*store, job("one").number);
+  EXPECT_NE(rows.at(0).find(",doubtful,\"left_terrain: 3 of 5\""), std::string::npos) << rows[0];
+  EXPECT_NE(rows.at(3).find(",invalid,\"mach_number: 0.7 times\""), std::string::npos) << rows[3];
+  EXPECT_EQ(store->retry_failed(job("one").number), 2);
+  EXPECT_EQ(job("one").quality, (QualityCounts{.sound = 1, .doubtful = 1, .not_assessed = 1}));
+}
+
 TEST_F(StoreTest, RunsOfSeveralLevelsAreDistinct) {
   const Job made = add("one", 1);
   SQLite::Database((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE)

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "documents.hpp"
+#include "schema_check.hpp"
 
 namespace talus {
 namespace {
@@ -51,6 +52,37 @@ TEST(Checks, WallLayersFillTheSupport) {
   EXPECT_TRUE(sound(layers(2.0, 4)));
 }
 
+TEST(Checks, TheCourantNumberIsThatOfAStableIntegrator) {
+  const auto faults = [](double cfl, const char* integrator) {
+    return faults_of(with("/numerics/cfl", cfl, with("/numerics/integrator", integrator)));
+  };
+  EXPECT_TRUE(faults(0.8, "rk2").empty());
+  EXPECT_TRUE(faults(0.4, "leapfrog").empty());
+  ASSERT_EQ(faults(0.81, "rk2").size(), 1u);
+  EXPECT_EQ(faults(0.81, "rk2")[0],
+            "/numerics/cfl: 0.81 is too large for integrator \"rk2\": allowed > 0 and <= 0.8; measured on slopes, the "
+            "deposit begins to shake a little above");
+  ASSERT_EQ(faults(0.41, "leapfrog").size(), 1u);
+  EXPECT_NE(faults(0.41, "leapfrog")[0].find("integrator \"leapfrog\": allowed > 0 and <= 0.4"), std::string::npos);
+  EXPECT_TRUE(sound(with("/numerics/cfl", 0.8))) << "rk2 is the default";
+  EXPECT_FALSE(sound(with("/numerics/cfl", 0.81)));
+}
+
+TEST(Checks, TheSchemaKnowsTheLimitsOfTheCourantNumber) {
+  const test::SchemaCheck schema("case");
+  const auto complaint = [&](double cfl, const char* integrator) {
+    Json document = with("/numerics/cfl", cfl);
+    if (integrator) document["numerics"]["integrator"] = integrator;
+    return schema.complaint(nlohmann::json(document));
+  };
+  EXPECT_EQ(complaint(0.8, nullptr), "");
+  EXPECT_EQ(complaint(0.8, "rk2"), "");
+  EXPECT_EQ(complaint(0.4, "leapfrog"), "");
+  EXPECT_NE(complaint(0.81, nullptr), "");
+  EXPECT_NE(complaint(0.81, "rk2"), "");
+  EXPECT_NE(complaint(0.41, "leapfrog"), "");
+}
+
 TEST(Warnings, AnOpenEndWithinReach) {
   // Crest (5, 8) at 30 deg reaches y = 0 at x = 5 + 8/tan(30 deg) = 18.86.
   const auto far = test::load(with("/terrain/bed_m/2", {19, 0}));
@@ -64,12 +96,6 @@ TEST(Warnings, AnOpenEndWithinReach) {
 TEST(Warnings, AWallLowerThanTheSlide) {
   EXPECT_EQ(test::load(with("/terrain/wall_top_m", 7)).warnings.size(), 1u);
   EXPECT_EQ(test::load(with("/terrain/wall_top_m", 8)).warnings.size(), 0u);
-}
-
-TEST(Warnings, AStepInWhichSoundCrossesASmoothingLength) {
-  const Json document = with("/numerics/sound_speed_m_s", 100);  // h = 0.75 m
-  EXPECT_TRUE(test::load(with("/time/fixed_step_s", 0.0074, document)).warnings.empty());
-  EXPECT_EQ(test::load(with("/time/fixed_step_s", 0.0076, document)).warnings.size(), 1u);
 }
 
 TEST(Warnings, AHypercubeThatIsToStopEarly) {
@@ -113,13 +139,6 @@ TEST(Warnings, ValuesThatNoSoilHasNameTheUnitMeant) {
 TEST(Warnings, ALayerIsWarnedOfWhereItStands) {
   const Json layered = with("/slide/outlines/0/material", {{"density_kg_m3", 19.4}});
   EXPECT_EQ(warning_of(layered).find("/slide/outlines/0/material/density_kg_m3: 19.4 kg/m3"), 0u);
-}
-
-TEST(Warnings, ASpacingThatLeavesFewParticles) {
-  EXPECT_TRUE(test::load(with("/particle_spacing_m", 0.65)).warnings.empty());  // 43 m2 / 0.4225 m2 = 102
-  const LoadedCase coarse = test::load(with("/particle_spacing_m", 0.66));      // 99
-  ASSERT_EQ(coarse.warnings.size(), 1u);
-  EXPECT_EQ(coarse.warnings[0].pointer, "/particle_spacing_m");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <ostream>
 
 #include "case/vertices.hpp"
 #include "temporary_directory.hpp"
@@ -26,6 +27,7 @@ struct Dialect {
   const char* name;
   std::string text;
 };
+void PrintTo(const Dialect& dialect, std::ostream* out) { *out << dialect.name; }
 
 class CsvDialects : public ::testing::TestWithParam<Dialect> {};
 
@@ -64,6 +66,17 @@ const Dialect dialects[] = {
     {"empty_cells_at_the_end", "x;y;;\n0;1,5;;\n2;-3;;\n4,25;0;;\n;;;\n"}};
 
 INSTANTIATE_TEST_SUITE_P(, CsvDialects, ::testing::ValuesIn(dialects), [](const auto& one) { return one.param.name; });
+
+TEST(ReadCsv, SaysWhatItRead) {
+  const auto form = [](const std::string& csv) {
+    Faults none;
+    return read_csv(csv, "f.csv", none).form;
+  };
+  EXPECT_EQ(form("0,1\n2,3\n"), "columns 1 and 2, separated by commas");
+  EXPECT_EQ(form("id\tElevation (m)\tChainage\n1\t0\t1,5\n2\t3\t4\n"),
+            "columns \"Chainage\" and \"Elevation (m)\", separated by tabs, decimal commas");
+  EXPECT_EQ(form("elevation;p\n0;1\n2;3\n"), "columns \"p\" and \"elevation\", separated by semicolons");
+}
 
 TEST(ReadCsv, HasOneFaultForAllLinesOfAKind) {
   EXPECT_EQ(complaint("x,y\n0,1\n\n0,a\n"), "f.csv:4: \"a\" is not a number");

@@ -62,7 +62,8 @@ class Basics(Directory):
         declared = re.findall(r'\{"(\S+)", "(\S+)"\}', "".join(
             (SOURCE / f"solver/{file}").read_text() for file in ("cli/help.hpp", "case/overrides.hpp")))
         tried = [("--realisation", "--realization"), ("--realisations", "--realizations"),
-                 ("study.realisations", "study.realizations"), ("rheology.yield=regularised", "rheology.yield=regularized")]
+                 ("study.realisations", "study.realizations"), ("rheology.yield=regularised", "rheology.yield=regularized"),
+                 ("terrain.left_boundary_m", "terrain.measured_from_m")]
         self.assertEqual(sorted(declared), sorted(tried))
         field = [talus("field", SLOPE, *COARSE, "--json", "--seed", "1", option, "2") for option in tried[0]]
         self.assertEqual(field[0].stdout, field[1].stdout)
@@ -76,6 +77,9 @@ class Basics(Directory):
         self.assertEqual(checks[0]["hash"], checks[1]["hash"])
         self.assertEqual([len(c["warnings"]) for c in checks], [len(checks[1]["warnings"]) + 1, len(checks[1]["warnings"])])
         self.assertIn("rheology.yield=regularized", checks[0]["warnings"][0]["message"])
+        origins = [json.loads(talus("validate", SLOPE, "--json", "--set", f"{key}=5").stdout) for key in tried[4]]
+        self.assertEqual(origins[0]["hash"], origins[1]["hash"])
+        self.assertIn("terrain.measured_from_m", origins[0]["warnings"][0]["message"])
 
     def test_bad_case_is_3_and_writes_nothing(self):
         out = self.dir / "out"

@@ -35,7 +35,7 @@ inline std::vector<Record> example_records(int made, bool one_failed) {
 }
 
 inline Plan example_plan(int planned, const std::string& title = "Example") {
-  Plan plan{title, {"0123456789abcdef"}, "0.1.0", 42, {}};
+  Plan plan{.title = title, .of = {.hash = "0123456789abcdef"}, .version = "0.1.0", .seed = 42, .study = {}};
   plan.study.realizations = planned;
   return plan;
 }

@@ -166,6 +166,22 @@ TEST(Charts, PngHasTheSizeOfTheCanvasTimesTwo) {
   }
 }
 
+TEST(Charts, AllNameWhatMakesTheStudyDoubtful) {
+  const test::TemporaryDirectory directory;
+  std::vector<Record> records = test::example_records(20, false);
+  for (Record& record : records) record.verdict = Verdict::sound;
+  test::write_example_study(directory.path(), test::example_plan(20), records, {});
+  const StudyFiles sound = read_study(directory.path());
+  EXPECT_EQ(sound.quality, "");
+  records[3].verdict = Verdict::doubtful;
+  records[3].objections = "left_terrain: 3 of 5";
+  test::write_example_study(directory.path(), test::example_plan(20), records, {});
+  const StudyFiles doubtful = read_study(directory.path());
+  for (const Sheet& sheet : all_sheets(doubtful))
+    EXPECT_TRUE(contains(sheet.script.text(), "'1 of 20 runs doubtful: 1 left terrain' at screen"));
+  for (const Sheet& sheet : all_sheets(sound)) EXPECT_FALSE(contains(sheet.script.text(), "doubtful"));
+}
+
 TEST(Charts, CountsAreToldHonestly) {
   EXPECT_EQ(count_text(example(20, false)), "20 realizations");
   EXPECT_EQ(count_text(example(20, true)), "19 of 20 realizations done, 1 failed");

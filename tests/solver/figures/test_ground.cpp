@@ -16,6 +16,14 @@ TEST(Ground, ClippedCutsExactlyAtBothEnds) {
   EXPECT_EQ(part[2], (Vec2{25, 0}));
 }
 
+TEST(Ground, ClippedKeepsFacesAndOverhangs) {
+  const std::vector<Vec2> cliff = {{0, 10}, {10, 10}, {10, 0}, {40, 0}};
+  EXPECT_EQ(clipped(cliff, 10, 20), (std::vector<Vec2>{{10, 10}, {10, 0}, {20, 0}}));
+  const std::vector<Vec2> overhang = {{0, 10}, {10, 10}, {6, 4}, {6, 0}, {40, 0}};
+  EXPECT_EQ(clipped(overhang, 8, 20), (std::vector<Vec2>{{8, 10}, {10, 10}, {8, 7}, {8, 0}, {20, 0}}))
+      << "joined along the cut where it is out of view";
+}
+
 TEST(Ground, BoundaryHasTheWallsThatStandInView) {
   EXPECT_EQ(boundary(slope, -1, 20).front(), (Vec2{0, 15}));
   EXPECT_EQ(boundary(slope, 1, 20).front(), (Vec2{1, 9}));

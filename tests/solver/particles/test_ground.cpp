@@ -109,10 +109,14 @@ TEST(FitLine, ANotchTooNarrowForAParticleIsFilled) {
   const double dx = 0.5;
   const Polyline bed{{{0, 20}, {8, 20}, {8.4, 16.5}, {8.8, 20}, {20, 20}, {30, 10}, {30.2, 3}, {30.4, 10}, {50, 10}},
                      false};
-  const Polyline fitted = fit_line(bed, dx).line;
+  const FittedLine report = fit_line(bed, dx);
+  const Polyline& fitted = report.line;
+  EXPECT_EQ(report.notches, 2);
+  EXPECT_EQ(report.moved, 0.0);
   EXPECT_EQ(fitted.vertices.front(), bed.vertices.front());
   EXPECT_EQ(fitted.vertices.back(), bed.vertices.back());
   const Ground ground({fitted});
+  EXPECT_NEAR(report.deepest_notch, -ground.nearest({30.2, 3}).distance, 1e-12) << "the bottom of the second";
   // A disc of diameter dx touches both sides of the first notch where it is about dx wide; of the second only the
   // edges.
   EXPECT_GT(ground.nearest({8.4, 20.0}).distance, 0.0);
@@ -123,6 +127,7 @@ TEST(FitLine, ANotchTooNarrowForAParticleIsFilled) {
   // A valley of 100 degrees and the corner of a box stay as they are, vertex by vertex.
   const Polyline box{{{0, 30}, {0, 20}, {10, 20}, {18, 13.3}, {26, 20}, {40, 20}}, false};
   EXPECT_EQ(fit_line(box, dx).line, box);
+  EXPECT_EQ(fit_line(box, dx).notches, 0);
 }
 
 TEST(FitLine, ARingStaysARing) {

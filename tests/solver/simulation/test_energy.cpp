@@ -68,6 +68,38 @@ TEST(Energy, WorkIsTheTrapezoidalSumOfPowersMeasuredAtAnyTimes) {
   expect_sums(restored);
 }
 
+TEST(Energy, OfOneParticleBeforeAndAfterItLeaves) {
+  const Model m = slope(0.6);
+  const FlowConstants k = flow_constants(m);
+  const ParticlePlan plan = plan_particles(m);
+  Soil soil = make_soil(m, k, plan, material_properties(m, plan));
+  const StartingPositions starts(plan.soil, bounding_box(m.slide));
+  const EnergyAccount account(k, soil);
+  for (double& rho : soil.rho) rho = 2200;
+  const std::size_t last = soil.size() - 1;
+  soil.y[last] -= 5;
+  soil.vx[last] = 3;
+  soil.vy[last] = -4;
+  soil.rho[last] = 2200 * 1.01;
+  soil.txx[last] = 300;
+  soil.tyy[last] = -500;
+  soil.txy[last] = 700;
+  const double mass = soil.m[last], kinetic = 0.5 * mass * 5 * 5;
+  const double compression = mass * k.c_s * k.c_s / 7 * ((std::pow(1.01, 6) - 1) / 6 + 1 / 1.01 - 1);
+  const double t2 = 300 * 300 + 500 * 500 + 200 * 200 + 2 * 700 * 700;  // t_zz = 200
+  const double distortion = mass / (2200 * 1.01) * t2 / (4 * k.soils[0].G);
+  for (const bool left : {false, true}) {
+    soil.n_active = left ? last : soil.size();
+    const EnergyBudget e = account.budget(k, soil, starts, 0.0, 0.0);
+    EXPECT_NEAR(e.potential, -mass * 9.81 * 5, 1e-6 * mass);
+    EXPECT_NEAR(e.kinetic, left ? 0 : kinetic, 1e-9 * kinetic);
+    EXPECT_NEAR(e.compression, left ? 0 : compression, 1e-9 * compression);
+    EXPECT_NEAR(e.distortion, left ? 0 : distortion, 1e-9 * distortion);
+    EXPECT_NEAR(e.departed, left ? kinetic + compression + distortion : 0, 1e-9 * kinetic);
+    EXPECT_NEAR(e.friction, -distortion, 1e-9 * distortion) << "the work of the deviator less what is stored";
+  }
+}
+
 TEST(Energy, OfABallisticBlockIsKineticAndPotential) {
   for (const auto integrator : {Integrator::rk2, Integrator::leapfrog}) {
     Model m = column(4.0, 2.0, 0.25);
@@ -191,6 +223,15 @@ TEST(Energy, HasTheSameBitsForAnyNumberOfThreadsAndAcrossACheckpoint) {
 TEST(Energy, OfASlideIsExplained) {
   Model m = slope();
   EXPECT_LT(std::abs(created_share(m)), 0.001);
+}
+
+TEST(Energy, TheShepardFilterCountsWhatItTakes) {
+  Model m = slope(0.6);
+  m.numerics.density_filter = DensityFilter::shepard;
+  m.time.end = 4.0;
+  const EnergyBudget e = after(m, m.time.end);
+  EXPECT_LT(std::abs(*e.created_share()), 0.004);
+  EXPECT_GT(e.density_diffusion, 0.004 * e.gravity_work()) << "counted with the other sign, it would show";
 }
 
 TEST(Energy, FindsAnUnstableRun) {

@@ -70,6 +70,8 @@ TEST(Energy, MomentumAndSpeeds) {
   EXPECT_DOUBLE_EQ(kinetic_energy(s), 0.5 * 9 + 0.5 * 2 * 16);
   EXPECT_DOUBLE_EQ(max_speed(s), 4.0);
   EXPECT_DOUBLE_EQ(rms_speed(s), std::sqrt(2 * (4.5 + 16) / 14));
+  s.n_active = 12;  // the last one has left and keeps its velocity
+  EXPECT_DOUBLE_EQ(rms_speed(s), std::sqrt(2 * 4.5 / 12));
 }
 
 TEST(Digest, DependsOnTheStateNotOnTheOrder) {

@@ -118,9 +118,16 @@ int main(int argc, char** argv) {
   provenance.case_hash = "0123456789abcdef";
   provenance.realization = what == "wrong" ? 77 : std::stoll(index);
   if (replicate) provenance.perturbation = std::stod(given.at("--perturbation"));
+  talus::Quality quality{.verdict = talus::Verdict::sound};
+  if (what == "doubtful" || what == "invalid") {
+    quality.verdict = *talus::verdict_of(what);
+    quality.reasons = {{.check = "still_moving", .verdict = quality.verdict, .message = "it moves"}};
+  }
   const double at = replicate ? 1e3 * std::stod(given.at("--perturbation")) : std::stod(index);
+  talus::RunResult run = result(name, at);
+  run.quality = quality;
   talus::fixtures::write(out / "snapshots.vtkhdf", "profile of " + name);
-  talus::fixtures::write(out / "result.tmp", talus::result_json(result(name, at), provenance).dump());
+  talus::fixtures::write(out / "result.tmp", talus::result_json(run, provenance).dump());
   fs::rename(out / "result.tmp", out / "result.json");
   append(diary, "end " + name + "\n");
   return 0;

@@ -182,6 +182,44 @@ TEST(RunStudy, FailuresAreRecordedAndStayInTheDenominator) {
   EXPECT_EQ(s.count("begin 2 "), 1);  // never drawn again by itself
 }
 
+TEST(RunStudy, AnInvalidResultCountsAsAFailedRunAndADoubtfulOneIsKept) {
+  Study s(8, "2=invalid,3=doubtful,4=doubtful");
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  const std::vector<Record> all = s.records();
+  ASSERT_EQ(all.size(), 8u);
+  EXPECT_FALSE(all[2].done);
+  EXPECT_EQ(all[2].reason, "invalid result: still_moving: it moves");
+  EXPECT_EQ(all[2].verdict, Verdict::invalid);
+  EXPECT_TRUE(all[3].done);
+  EXPECT_EQ(all[3].verdict, Verdict::doubtful);
+  EXPECT_EQ(all[3].objections, "still_moving: it moves");
+  EXPECT_FALSE(fs::exists(s.out / "runs" / "000002.json"));
+  EXPECT_EQ(json::parse(content(s.out / "runs" / "000002.failed.json"))["reason"], all[2].reason);
+  EXPECT_EQ(s.summary()["realizations"]["failed"], 1);
+  EXPECT_EQ(s.summary()["quantities"]["influence_zone_m"]["exceedance"][0]["n"], 8);
+  EXPECT_EQ(s.summary()["quality"]["invalid"], 1);
+  EXPECT_EQ(s.summary()["quality"]["doubtful"], 2);
+  const std::string tables = content(s.out / "realizations.csv") + content(s.out / "study.json");
+  s.run();  // from the records on disk
+  EXPECT_EQ(content(s.out / "realizations.csv") + content(s.out / "study.json"), tables);
+  EXPECT_EQ(s.count("begin 2 "), 1);
+}
+
+TEST(RunStudy, AnInvalidResultThatAKilledStudyLeftIsAFailedRun) {
+  Study s(3, "1=invalid");
+  s.run();
+  const fs::path left = s.out / "work" / "000001";
+  fs::create_directories(left);
+  fs::remove(s.out / "runs" / "000001.failed.json");
+  json result = json::parse(content(s.out / "runs" / "000000.json"));
+  result["provenance"]["realization"] = 1;
+  result["quality"] = {{"verdict", "invalid"}, {"reasons", {{{"check", "a"}, {"message", "b"}}}}};
+  write(left / "result.json", result.dump());
+  s.run();
+  EXPECT_EQ(s.records().at(1).reason, "invalid result: a: b");
+  EXPECT_EQ(s.count("begin 1 "), 1);
+}
+
 TEST(RunStudy, FailedOnesAreTriedAgainWhenAsked) {
   Study s(6, "2=diverge");
   s.run();

@@ -178,7 +178,7 @@ def hill(raw):
     save("hill", ground, slip, case(
         "hill", "Hillside above a plain",
         "Gentle hillside; the slide goes to the left and runs out on a plain. The slip surface is assumed.",
-        1.6, material, 80, LEFT, numerics={"sound_speed_m_s": 130}))
+        1.6, material, 120, LEFT, numerics={"sound_speed_m_s": 130}))
 
 
 REVIEW = {  # problem 1(c): top of each soil [m], cohesion [Pa], friction angle [deg]; and the critical circle [m]

@@ -1,0 +1,58 @@
+#include "run/warnings.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <string_view>
+
+#include "random_field/random_field.hpp"
+#include "simulation/checks.hpp"
+
+namespace talus {
+namespace {
+
+constexpr double little_variance = 0.5;  ///< captured share of the variance that is warned of [-]
+
+/// The key of the case that a check concerns.
+std::string pointer_of(std::string_view check) {
+  if (check == "few_particles_across") return "/particle_spacing_m";
+  return check == "short_correlation_length" ? "/random_field" : "/time/fixed_step_s";
+}
+
+}  // namespace
+
+std::optional<double> shortest_correlation(const std::optional<FieldSpec>& field) {
+  if (!field || field->cell_average || field->sigma == 0.0) return std::nullopt;
+  if (!field->along_y()) return field->ell_x;
+  return field->along_x() ? std::min(field->ell_x, field->ell_y) : field->ell_y;
+}
+
+std::vector<Fault> warnings_before_run(const Case& c, const ParticlePlan& plan, const FieldSummary& field) {
+  std::vector<Vec2> starts;
+  for (const SoilPoint& point : plan.soil) starts.push_back(point.x);
+  RunFacts facts = facts_before_run(c.model, starts);
+  facts.correlation_length = shortest_correlation(c.field);
+  std::vector<Fault> warnings;
+  for (const QualityReason& reason : assess(facts).reasons)
+    warnings.push_back({pointer_of(reason.check), reason.message});
+  if (c.field && field.captured_variance < little_variance) {
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "captures %.2g %% of the variance with %lld terms: most of the stated variability never enters the runs",
+        100.0 * field.captured_variance, static_cast<long long>(field.terms));
+    warnings.push_back({"/random_field", text});
+  }
+  return warnings;
+}
+
+std::vector<Fault> warnings_before_run(const Case& c) {
+  FieldSummary summary;
+  if (c.field) {
+    const RandomField field(*c.field, bounding_box(c.model.slide), c.model.dx);
+    summary.captured_variance = field.captured_variance();
+    summary.terms = static_cast<std::int64_t>(field.terms());
+  }
+  return warnings_before_run(c, plan_particles(c.model), summary);
+}
+
+}  // namespace talus
