@@ -46,8 +46,8 @@ bool check_between_ends(const SlidePart& part, const Vertices& origin, const Ter
 void check_on_ground(const SlidePart& part, const Vertices& origin, const Model& model, Faults& faults) {
   const Terrain& terrain = model.terrain;
   if (!terrain.closed && !check_between_ends(part, origin, terrain, faults)) return;
-  const Penetration in =
-      terrain.closed ? reach_outside_ring(part.outline, terrain.bed) : depth_below_bed(part.outline, terrain.bed);
+  const double top = std::ranges::max(part.outline, {}, &Vec2::y).y;
+  const Penetration in = reach_outside_ring(part.outline, terrain.closed ? terrain.bed : room_above(terrain.bed, top));
   if (in.depth > 0.5 * model.dx)
     faults.add(origin.source,
                std::string(terrain.closed ? "reaches out of the closed bed by " : "lies below the bed by ") +
@@ -80,6 +80,18 @@ double energy_line_over(const Model& model, Vec2 end) {
   for (const SlidePart& part : model.slide)
     for (const Vec2& v : part.outline) height = std::max(height, v.y - std::tan(phi) * std::abs(end.x - v.x));
   return height - end.y;
+}
+
+/// Legal, but often two rows in the wrong order.
+void warn_of_overhangs(const Terrain& terrain, std::vector<Fault>& warnings) {
+  for (std::size_t k = 1; k < terrain.bed.size(); ++k) {
+    const Vec2 from = terrain.bed[k - 1], to = terrain.bed[k];
+    if (to.x >= from.x) continue;
+    warnings.push_back({pointer_to("/terrain/bed_m", k),
+                        "runs back from " + to_text(from) + " to " + to_text(to) +
+                            ": rock hangs over there; if that is not meant, check the order of the vertices"});
+    return;
+  }
 }
 
 void warn_of_open_ends(const Model& model, std::vector<Fault>& warnings) {
@@ -130,6 +142,7 @@ std::vector<Fault> find_warnings(const Case& c) {
   std::vector<Fault> warnings;
   const Model& model = c.model;
   warn_of_unlikely_values(model, warnings);
+  if (!model.terrain.closed) warn_of_overhangs(model.terrain, warnings);
   if (!model.terrain.closed) warn_of_open_ends(model, warnings);
   if (model.numerics.precision == Precision::full)
     warnings.push_back(

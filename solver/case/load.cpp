@@ -45,7 +45,9 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
   in.object("slide",
             "The soil that moves: outlines, or the ground surface before the slide and the slip surface beneath it.",
             Absent::fault, [&](ObjectReader& section) { slide = read_slide(section, directory, material); });
-  in.object("terrain", "The rigid ground. Give bed_m or bed_csv.", Absent::fault,
+  in.object("terrain",
+            "The rigid ground: a bed, or nothing where the slide is given by surfaces, which are joined to one.",
+            Absent::defaults,
             [&](ObjectReader& section) { read_terrain(section, m.terrain, directory, slide, m.dx, origins.bed); });
   m.slide = std::move(slide.parts);
   m.materials = std::move(slide.materials);
@@ -104,6 +106,7 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   Json endless = out.resolved;
   for (const char* key : {"end_s", "snapshot_times_s"}) endless["time"].erase(key);
   out.hash_without_end = case_hash(endless);
+  out.bed_source = origins.bed.source;
   return out;
 }
 

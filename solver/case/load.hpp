@@ -33,6 +33,7 @@ struct LoadedCase {
   std::string hash;  ///< 16 hex digits over what decides the runs of `resolved`, see case_hash
   std::string hash_without_end;      ///< the same less end and snapshot times: runs that differ in their length only
   std::filesystem::path path;        ///< the file read; empty when the document was given
+  std::string bed_source;            ///< where the bed was given, or that it was joined from surfaces
   std::vector<Fault> warnings = {};  ///< what can be run but may not be meant
 };
 

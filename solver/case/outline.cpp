@@ -7,6 +7,8 @@
 #include <boost/geometry/geometries/register/point.hpp>
 #include <numeric>
 
+#include "particles/ground.hpp"
+
 BOOST_GEOMETRY_REGISTER_POINT_2D(talus::Vec2, double, boost::geometry::cs::cartesian, x, y)
 
 namespace talus {
@@ -111,43 +113,39 @@ std::vector<std::vector<Vec2>> between_surfaces(std::span<const Vec2> ground, st
   return outlines;
 }
 
-double bed_height(std::span<const Vec2> bed, double x) {
-  x = std::clamp(x, bed.front().x, bed.back().x);
-  const auto right =
-      std::upper_bound(bed.begin() + 1, bed.end() - 1, x, [](double value, Vec2 v) { return value < v.x; });
-  const Vec2 a = *(right - 1), b = *right;
-  return a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x);
+double height_beneath(std::span<const Vec2> bed, Vec2 point) {
+  double height = -1e300;
+  for (std::size_t k = 0; k + 1 < bed.size(); ++k) {
+    const Vec2 a = bed[k], b = bed[k + 1];
+    if (std::min(a.x, b.x) > point.x || std::max(a.x, b.x) < point.x) continue;
+    const double y = a.x == b.x ? std::clamp(point.y, std::min(a.y, b.y), std::max(a.y, b.y))
+                                : a.y + (b.y - a.y) * (point.x - a.x) / (b.x - a.x);
+    if (y <= point.y) height = std::max(height, y);
+  }
+  return height == -1e300 ? point.y : height;
 }
 
-Penetration depth_below_bed(std::span<const Vec2> outline, std::span<const Vec2> bed) {
-  Penetration worst;
-  const auto compare = [&](Vec2 p) {
-    if (p.x < bed.front().x || p.x > bed.back().x) return;
-    const double depth = bed_height(bed, p.x) - p.y;
-    if (depth > worst.depth) worst = {p, depth};
-  };
-  // Along an edge the depth is piecewise linear: its maximum lies at the edge's ends or above a vertex of the bed.
-  for (std::size_t k = 0; k < outline.size(); ++k) {
-    Vec2 a = outline[k], b = outline[(k + 1) % outline.size()];
-    compare(a);
-    if (a.x > b.x) std::swap(a, b);
-    auto v = std::upper_bound(bed.begin(), bed.end(), a.x, [](double x, Vec2 w) { return x < w.x; });
-    for (; v != bed.end() && v->x < b.x; ++v) compare({v->x, a.y + (b.y - a.y) * (v->x - a.x) / (b.x - a.x)});
-  }
-  return worst;
+std::vector<Vec2> room_above(std::span<const Vec2> bed, double top) {
+  for (const Vec2& v : bed) top = std::max(top, v.y);
+  std::vector<Vec2> ring(bed.begin(), bed.end());
+  ring.push_back({bed.back().x, top + 1.0});
+  ring.push_back({bed.front().x, top + 1.0});
+  return ring;
 }
 
 Penetration reach_outside_ring(std::span<const Vec2> outline, std::span<const Vec2> ring) {
-  const Polygon inside = to_polygon(ring);
-  Polygons outside;
-  bg::difference(to_polygon(outline), inside, outside);
+  const Polygon body = to_polygon(outline), inside = to_polygon(ring);
+  const Ground body_edge({Polyline{body.outer(), true}}), ring_edge({Polyline{inside.outer(), true}});
   Penetration worst;
-  for (const Polygon& piece : outside) {
-    // Rock that stands up into the outline has all its vertices on the ring: its thickness, 2 area / perimeter, counts.
-    const double thickness = 2.0 * bg::area(piece) / bg::perimeter(piece);
-    for (const Vec2& p : piece.outer())
-      if (const double depth = std::max(thickness, bg::distance(p, inside)); depth > worst.depth) worst = {p, depth};
-  }
+  const auto compare = [&](Vec2 at, double depth) {
+    if (depth > worst.depth) worst = {at, depth};
+  };
+  for (const Vec2& p : body.outer()) compare(p, -ring_edge.nearest(p).distance);
+  for (const Vec2& p : inside.outer()) compare(p, body_edge.nearest(p).distance);
+  // A wall that stands right across the outline has no vertex in it: its thickness, 2 area / perimeter, counts.
+  Polygons outside;
+  bg::difference(body, inside, outside);
+  for (const Polygon& piece : outside) compare(piece.outer().front(), 2.0 * bg::area(piece) / bg::perimeter(piece));
   return worst;
 }
 

@@ -28,20 +28,21 @@ double shared_area(std::span<const Vec2> a, std::span<const Vec2> b);
 /// { slip < y < ground }, counter-clockwise from its leftmost vertex. Both surfaces run left to right.
 std::vector<std::vector<Vec2>> between_surfaces(std::span<const Vec2> ground, std::span<const Vec2> slip);
 
-/// Height of an open bed at x, of its nearer end beyond it. [m]
-double bed_height(std::span<const Vec2> bed, double x);
+/// Height of the bed beneath a point: of its highest crossing with the vertical through the point that does not lie
+/// above the point; of the point itself where there is none. [m]
+double height_beneath(std::span<const Vec2> bed, Vec2 point);
 
-/// A point of the outline's edge that lies deepest on the wrong side of the ground, and how deep. [m]
+/// A point of the outline that lies on the wrong side of the ground, and how deep. [m]
 struct Penetration {
   Vec2 at;
   double depth = 0.0;
 };
 
-/// How deep an outline reaches below an open bed, within the bed's extent; depth 0 where it does not.
-Penetration depth_below_bed(std::span<const Vec2> outline, std::span<const Vec2> bed);
-
-/// How far an outline reaches out of a closed bed, or the thickness of the rock inside it; depth 0 where it does
+/// How far an outline reaches out of a ring of ground, or the thickness of the rock inside it; depth 0 where it does
 /// neither.
 Penetration reach_outside_ring(std::span<const Vec2> outline, std::span<const Vec2> ring);
+
+/// The room above an open bed as a ring: the bed, and up from its ends to above `top`. [m]
+std::vector<Vec2> room_above(std::span<const Vec2> bed, double top);
 
 }  // namespace talus

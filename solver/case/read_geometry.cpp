@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "case/joined_bed.hpp"
 #include "case/outline.hpp"
 #include "case/sections.hpp"
 #include "particles/geometry.hpp"
@@ -33,16 +34,39 @@ bool check_simple(const Vertices& v, bool closed, Faults& faults) {
   return false;
 }
 
-/// Faults of a surface that does not run from left to right.
-bool check_left_to_right(const Vertices& v, bool steps_allowed, Faults& faults) {
+/// Faults of a surface that does not run from left to right; vertical faces are allowed.
+bool check_left_to_right(const Vertices& v, Faults& faults) {
   for (std::size_t k = 1; k < v.points.size(); ++k) {
     const double before = v.points[k - 1].x, x = v.points[k].x;
-    if (x > before || (steps_allowed && x == before)) continue;
-    faults.add(v.location(k), "x = " + to_text(x) + " does not exceed the x before it, " + to_text(before) +
+    if (x >= before) continue;
+    faults.add(v.location(k), "x = " + to_text(x) + " is less than the x before it, " + to_text(before) +
                                   ": vertices must run from left to right");
     return false;
   }
-  return true;
+  if (v.points.front().x < v.points.back().x) return true;
+  faults.add(v.source, "has no extent: every x is " + to_text(v.points.front().x));
+  return false;
+}
+
+/// Faults of an open bed. It may have vertical faces and overhangs, but begins at its left end and ends at its right
+/// one, with free air above both, and does not cross or touch itself.
+bool check_open_bed(const Vertices& bed, Faults& faults) {
+  const double left = bed.points.front().x, right = bed.points.back().x;
+  const auto refuse = [&](std::size_t k, const std::string& where) {
+    faults.add(bed.location(k), "x = " + to_text(bed.points[k].x) + " lies " + where +
+                                    ": a bed runs from its left end to its right end");
+    return false;
+  };
+  if (right <= left) return refuse(bed.points.size() - 1, "not to the right of the first vertex, x = " + to_text(left));
+  for (std::size_t k = 1; k < bed.points.size(); ++k)
+    if (bed.points[k].x < left || bed.points[k].x > right)
+      return refuse(k, "beyond an end of the bed, x = " + to_text(left) + " to " + to_text(right));
+  if (!check_simple(bed, false, faults)) return false;
+  if (!self_intersection(room_above(bed.points, bed.points.front().y), true)) return true;
+  faults.add(bed.source,
+             "has no free air above its first or last vertex: soil lies on the left of the bed as it is "
+             "walked, so an end may not stand beneath the bed or below a vertical face");
+  return false;
 }
 
 /// A ring with an area, that does not cross itself.
@@ -87,14 +111,16 @@ void read_outline(ObjectReader& in, const std::filesystem::path& directory, cons
 /// What a survey gives: the ground before the slide, and the surface it slides on.
 void cut_outlines(ObjectReader& in, const Vertices& ground, const Vertices& slip, SlideInput& slide) {
   Json resolved = Json::array();
-  const bool ground_sound = !ground.empty() && check_left_to_right(ground, true, in.faults());
-  const bool slip_sound = !slip.empty() && check_left_to_right(slip, true, in.faults());
+  const bool ground_sound = !ground.empty() && check_left_to_right(ground, in.faults());
+  const bool slip_sound = !slip.empty() && check_left_to_right(slip, in.faults());
   if (ground_sound && slip_sound) {
     for (auto& outline : between_surfaces(ground.points, slip.points)) {
       resolved.push_back({{"outline_m", to_json(outline)}});
       slide.origins.push_back({outline, slip.source});
       slide.parts.push_back({std::move(outline), 0});
     }
+    slide.ground = ground;
+    slide.slip = slip;
     if (slide.parts.empty()) in.fault("", "holds no soil: no part of the slip surface lies below the ground surface");
   }
   in.record("outlines", std::move(resolved));
@@ -127,15 +153,30 @@ void read_ends(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx)
   read_wall_top(in, t, slide, dx);
 }
 
+/// The bed that the slide's surfaces leave, or nothing and a fault.
+Vertices join_surfaces(ObjectReader& in, const SlideInput& slide, const Vertices& beyond, bool closed) {
+  if (closed) {
+    in.fault("bed_m", "is missing (or bed_csv): a closed bed is not joined from surfaces");
+  } else if (slide.ground.empty()) {
+    if (slide.by_outlines) in.fault("bed_m", "is missing (or bed_csv): a slide that is given by outlines needs a bed");
+  } else if (!slide.parts.empty() && (beyond.empty() || check_left_to_right(beyond, in.faults()))) {
+    return {joined_bed(slide.ground.points, slide.slip.points, beyond.points, bounding_box(slide.parts)),
+            "the bed joined from the surfaces of the slide"};
+  }
+  return {};
+}
+
 }  // namespace
 
 SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, const MaterialInput& fallback) {
-  SlideInput slide{{}, {}, {fallback}};
+  SlideInput slide;
+  slide.materials = {fallback};
   const bool outlines = in.find("outlines") != nullptr;
   const auto given = [&](const char* key) { return in.find(key) != nullptr; };
   const bool ground_given = given("ground_surface_m") || given("ground_surface_csv");
   const bool surfaces = given("slip_surface_m") || given("slip_surface_csv") || ground_given;
   const bool by_surfaces = surfaces && !outlines;
+  slide.by_outlines = outlines;
   if (outlines && surfaces) in.fault("", "is given both by outlines and by surfaces; give one of the two");
   if (!outlines && !surfaces) in.fault("outlines", "is missing (or ground_surface_m and slip_surface_m)");
   in.objects("outlines", {1, 100}, {"Closed outlines that do not overlap, each of one material.", "survey"},
@@ -160,14 +201,26 @@ SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, 
 
 void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& directory, const SlideInput& slide,
                   double dx, Vertices& bed) {
-  bed = read_vertices(
-      in, "bed", {2, most_vertices}, directory,
-      {"Bed polyline [x, y]. Open: x strictly increasing, soil above it; closed: a ring with the soil inside.",
-       "survey"});
-  in.one_form({{{"bed_m"}}, {{"bed_csv"}}});
+  bed = read_vertices(in, "bed", {2, most_vertices}, directory,
+                      {"Bed polyline [x, y]. Open: from its left end to its right end with the soil on its left as it "
+                       "is walked, vertical faces and overhangs allowed; closed: a ring with the soil inside. Not "
+                       "needed with slide.ground_surface and slide.slip_surface: the bed is then the lower of the two.",
+                       "survey"},
+                      false);
+  const Vertices beyond =
+      read_vertices(in, "ground_beyond", {2, most_vertices}, directory,
+                    {"Ground outside the slide where it differs from slide.ground_surface, from left to right; only "
+                     "without a bed.",
+                     "survey"},
+                    false);
+  in.one_form({{{"bed_m"}}, {{"bed_csv"}}, {{"ground_beyond_m"}}, {{"ground_beyond_csv"}}, {{}}});
   in.flag("closed", t.closed, {"The bed is a ring, its last vertex joined to its first.", "survey"});
-  const bool sound =
-      !bed.empty() && (t.closed ? check_ring(bed, in.faults()) : check_left_to_right(bed, false, in.faults()));
+  const auto given = [&](const char* key) { return in.find(key) != nullptr; };
+  const bool bed_given = given("bed_m") || given("bed_csv");
+  if (!bed_given) bed = join_surfaces(in, slide, beyond, t.closed);
+  for (const char* key : {"ground_beyond_m", "ground_beyond_csv"})
+    if (bed_given && given(key)) in.fault(key, "is given beside a bed; the bed holds the ground beyond the slide");
+  const bool sound = !bed.empty() && (t.closed ? check_ring(bed, in.faults()) : check_open_bed(bed, in.faults()));
   if (!sound) bed.points.clear();
   t.bed = bed.points;
   if (t.closed && signed_area(t.bed) < 0.0) std::reverse(t.bed.begin(), t.bed.end());

@@ -39,6 +39,8 @@ struct SlideInput {
   std::vector<SlidePart> parts;
   std::vector<Vertices> origins;    ///< of the parts' vertices
   std::vector<Material> materials;  ///< the default one, then those of the outlines, each once
+  bool by_outlines = false;
+  Vertices ground, slip;  ///< the surfaces that the slide lies between; empty where it is given by outlines
 };
 SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, const MaterialInput& fallback);
 /// @param slide  for the default height of the end walls; @param dx  particle spacing [m]

@@ -4,17 +4,21 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <optional>
 
-#include "case/load.hpp"
+#include "case/ground_report.hpp"
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
+#include "figures/case_sheet.hpp"
 #include "figures/figures.hpp"
 #include "figures/profile.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
 #include "math/angle.hpp"
+#include "simulation/particle_setup.hpp"
 #include "support/files.hpp"
 #include "support/json.hpp"
+#include "support/text.hpp"
 
 namespace talus::cli {
 namespace {
@@ -62,9 +66,26 @@ Exit profile(const ProfileOptions& options) {
 }
 
 struct PlotOptions {
-  fs::path directory;
-  bool json = false;
+  fs::path source;  ///< a directory of results or a case file
+  std::optional<fs::path> out;
+  bool walls = false, json = false;
 };
+
+/// The case before it is run, as CASE-ground.svg in the current directory unless `out` says otherwise.
+std::vector<fs::path> draw_case(const PlotOptions& options) {
+  const LoadedCase loaded = load_case(options.source);
+  print_warnings(loaded.warnings);
+  const GroundReport report = report_ground(loaded);
+  const ParticlePlan plan = plan_particles(loaded.value.model);
+  const fs::path out = options.out.value_or(options.source.stem().string() + "-ground.svg");
+  const std::string subtitle = "Before the run: particle spacing " + to_text(loaded.value.model.dx) + " m, " +
+                               std::to_string(plan.soil.size()) + " soil and " + std::to_string(plan.walls.size()) +
+                               " wall particles";
+  figures::case_sheet(loaded, report, {loaded.value.title, subtitle, "Talus " + version + "  ·  case " + loaded.hash},
+                      options.walls)
+      .save(out);
+  return {out};
+}
 
 std::vector<fs::path> draw(const fs::path& directory) {
   if (fs::exists(directory / "study.json")) return plot_study(directory);
@@ -74,7 +95,7 @@ std::vector<fs::path> draw(const fs::path& directory) {
 }
 
 Exit plot(const PlotOptions& options) {
-  const std::vector<fs::path> figures = draw(options.directory);
+  const std::vector<fs::path> figures = fs::is_regular_file(options.source) ? draw_case(options) : draw(options.source);
   if (options.json) {
     Json all = Json::array();
     for (const fs::path& figure : figures) all.push_back(figure.string());
@@ -102,11 +123,22 @@ void add_profile(CLI::App& app, Action& action) {
 
 void add_plot(CLI::App& app, Action& action) {
   auto options = std::make_shared<PlotOptions>();
-  CLI::App* verb = app.add_subcommand("plot", "Draw the figures of a finished study or run into DIR/figures");
-  verb->add_option("DIR", options->directory, "Directory of the study or run")->required();
+  CLI::App* verb = app.add_subcommand("plot",
+                                      "Draw the figures of a finished study or run into DIR/figures, or a case before "
+                                      "it is run");
+  verb->add_option("DIR", options->source, "Directory of the study or run, or a case file")->required();
+  verb->add_option("--out", options->out, "Output file of a case; the format is taken from the extension")
+      ->type_name("FILE")
+      ->check(has_ending({".svg", ".png"}));
+  verb->add_flag("--walls", options->walls, "Draw the wall particles of a case as well");
   verb->add_flag("--json", options->json, "Print the paths as JSON");
-  set_footer(*verb, {exit_text::bad_case, exit_text::io}, {"plot study"});
-  verb->callback([options, &action] { action = [options] { return plot(*options); }; });
+  set_footer(*verb, {exit_text::bad_case, exit_text::io}, {"plot study", "plot slope.json --out slope.svg"});
+  verb->callback([options, &action] {
+    if ((options->out || options->walls) && !fs::is_regular_file(options->source))
+      throw CLI::ValidationError(
+          "--out and --walls belong to the picture of a case; figures of a study or run go into DIR/figures");
+    action = [options] { return plot(*options); };
+  });
 }
 
 }  // namespace talus::cli

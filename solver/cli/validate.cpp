@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "case/load.hpp"
+#include "case/ground_report.hpp"
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "particles/geometry.hpp"
@@ -67,6 +67,32 @@ Json to_json(const std::vector<Fault>& faults) {
 
 void print_json(const Json& value) { std::cout << value.dump(2, ' ', false, Json::error_handler_t::replace) << "\n"; }
 
+Json end_json(bool wall, Vec2 end, double wall_top) {
+  Json out = {{"kind", wall ? "wall" : "open"}, {"x_m", end.x}, {"y_m", end.y}};
+  if (wall) out["top_m"] = wall_top;
+  return out;
+}
+
+Json to_json(const GroundReport& r, const Terrain& terrain) {
+  Json out = {{"source", r.source},
+              {"vertices", {{"given", r.given}, {"kept", r.kept}}},
+              {"noise_m", r.fitted.noise},
+              {"moved_m", r.fitted.moved},
+              {"notches", {{"filled", r.fitted.notches}, {"deepest_m", r.fitted.deepest_notch}}}};
+  if (terrain.closed) return out;
+  out["left_end"] = end_json(terrain.left_wall, terrain.bed.front(), terrain.wall_top);
+  out["right_end"] = end_json(terrain.right_wall, terrain.bed.back(), terrain.wall_top);
+  return out;
+}
+
+Json slide_json(const GroundReport& r, double dx) {
+  return {{"x_m", {r.slide.lo.x, r.slide.hi.x}},
+          {"y_m", {r.slide.lo.y, r.slide.hi.y}},
+          {"thickness_m", r.thickness},
+          {"thickness_spacings", r.thickness / dx},
+          {"direction", r.goes_right ? "right" : "left"}};
+}
+
 Json to_json(const LoadedCase& loaded, const Demand& d) {
   Json out = {{"valid", true},
               {"title", loaded.value.title},
@@ -76,13 +102,41 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
               {"steps", d.steps},
               {"memory_bytes", d.memory},
               {"mass_kg_m", {{"filled", d.mass.filled}, {"outline", d.mass.outline}}}};
+  const Model& model = loaded.value.model;
+  const GroundReport report = report_ground(loaded);
+  out["ground"] = to_json(report, model.terrain);
+  out["slide"] = slide_json(report, model.dx);
   if (d.captured_variance) out["field"] = {{"terms", d.field_terms}, {"captured_variance", *d.captured_variance}};
   out["warnings"] = to_json(loaded.warnings);
   return out;
 }
 
+void print_end(const char* name, bool wall, Vec2 end, double wall_top) {
+  std::printf("%-18s %s at (%.10g, %.10g)", name, wall ? "wall" : "open", end.x, end.y);
+  if (wall) std::printf(" up to y = %.10g m", wall_top);
+  std::printf("\n");
+}
+
+void print_ground(const GroundReport& r, const Model& model) {
+  const FittedLine& f = r.fitted;
+  std::printf("ground             %s: %zu vertices, %zu after fitting to the spacing\n", r.source.c_str(), r.given,
+              r.kept);
+  if (f.noise > 0.0) std::printf("                   noise of the survey %.2g m (standard deviation)\n", f.noise);
+  if (f.moved > 0.0) std::printf("                   vertices lie at most %.2g m from the fitted line\n", f.moved);
+  if (f.notches > 0)
+    std::printf("                   %d %s narrower than a particle filled, at most %.2g m deep\n", f.notches,
+                f.notches == 1 ? "notch" : "notches", f.deepest_notch);
+  const Terrain& t = model.terrain;
+  if (!t.closed) print_end("left end", t.left_wall, t.bed.front(), t.wall_top);
+  if (!t.closed) print_end("right end", t.right_wall, t.bed.back(), t.wall_top);
+  std::printf("slide              x = %.10g to %.10g m, y = %.10g to %.10g m, at most %.3g m thick (%.3g spacings)\n",
+              r.slide.lo.x, r.slide.hi.x, r.slide.lo.y, r.slide.hi.y, r.thickness, r.thickness / model.dx);
+  std::printf("direction          to the %s\n", r.goes_right ? "right" : "left");
+}
+
 void print_text(const LoadedCase& loaded, const Demand& d) {
   std::printf("%s\n", loaded.value.title.c_str());
+  print_ground(report_ground(loaded), loaded.value.model);
   std::printf("particles          %zu soil + %zu wall\n", d.soil, d.wall);
   std::printf("mass               %.0f kg/m, %+.2f %% of the outlines'\n", d.mass.filled,
               100.0 * (d.mass.filled / d.mass.outline - 1.0));

@@ -9,7 +9,9 @@
 
 #include "case/load.hpp"
 #include "figures/charts.hpp"
+#include "figures/energy.hpp"
 #include "figures/profile.hpp"
+#include "io/history.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
 #include "support/error.hpp"
@@ -100,6 +102,14 @@ void draw_end(Album& album, const fs::path& file, const Model& model, Stamps sta
             model, stamps);
 }
 
+// Runs of earlier versions have no energy in their history, or no history.
+void draw_energy(Album& album, const fs::path& file, const Stamps& stamps) {
+  if (!fs::exists(file)) return;
+  const std::vector<HistoryRow> history = read_history(file);
+  const auto moved = [](const HistoryRow& row) { return row.energy.potential != 0.0; };
+  if (std::ranges::any_of(history, moved)) album.add("energy", energy_sheet(history, stamps));
+}
+
 // Every snapshot in the same view and colours, one at a time in memory.
 void draw_snapshots(Album& album, const fs::path& file, const Model& model, Stamps stamps) {
   stamps.subtitle = speed_words;
@@ -153,6 +163,7 @@ std::vector<fs::path> plot_run(const fs::path& directory) {
   Album album(directory);
   draw_motion(album, file, "", model, stamps);
   draw_end(album, file, model, stamps);
+  draw_energy(album, directory / "history.csv", stamps);
   draw_snapshots(album, file, model, stamps);
   return album.drawn();
 }

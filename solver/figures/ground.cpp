@@ -15,11 +15,12 @@ Vec2 at_x(Vec2 a, Vec2 b, double x) { return a + ((x - a.x) / (b.x - a.x)) * (b 
 std::vector<Vec2> clipped(const std::vector<Vec2>& line, double lo, double hi) {
   std::vector<Vec2> out;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const Vec2 a = line[i];
-    const Vec2 b = line[i + 1];
-    if (b.x < lo || a.x > hi) continue;
-    if (out.empty()) out.push_back(a.x < lo ? at_x(a, b, lo) : a);
-    out.push_back(b.x > hi ? at_x(a, b, hi) : b);
+    const Vec2 a = line[i], b = line[i + 1];
+    if (std::max(a.x, b.x) < lo || std::min(a.x, b.x) > hi) continue;
+    for (const Vec2 end : {a, b}) {
+      const Vec2 cut = end.x < lo ? at_x(a, b, lo) : end.x > hi ? at_x(a, b, hi) : end;
+      if (out.empty() || !(out.back() == cut)) out.push_back(cut);
+    }
   }
   return out;
 }
@@ -61,9 +62,10 @@ GroundElements ground_elements(Script& script, const Terrain& terrain, const Box
   if (line_of_ground.size() < 2) return {};
   GroundElements elements;
   if (!terrain.closed) {
-    script.data("fill" + tag, clipped(terrain.bed, view.lo.x, view.hi.x));
-    elements.behind.push_back("$fill" + tag + " using 1:2 with filledcurves y1=" + number(view.lo.y) +
-                              " fillcolor rgb '" + ground + "'");
+    std::vector<Vec2> rock = clipped(terrain.bed, view.lo.x, view.hi.x);
+    rock.insert(rock.end(), {{rock.back().x, view.lo.y}, {rock.front().x, view.lo.y}});
+    script.data("fill" + tag, rock);
+    elements.behind.push_back("$fill" + tag + " using 1:2 with filledcurves closed fillcolor rgb '" + ground + "'");
   }
   std::vector<std::array<double, 4>> rows;
   for (const Stroke& s : hatching(line_of_ground, 9 / metre, 8 / metre))

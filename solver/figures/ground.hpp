@@ -8,7 +8,8 @@
 
 namespace talus::figures {
 
-/// Part of an open polyline with x in [lo, hi], cut exactly at both. [m]
+/// Part of an open polyline with x in [lo, hi], cut exactly at both; where it leaves and returns it is joined along the
+/// cut. [m]
 std::vector<Vec2> clipped(const std::vector<Vec2>& line, double lo, double hi);
 
 /// The boundary as one line with the soil on its left: end walls and bed, or the whole ring. [m]

@@ -68,7 +68,7 @@ std::string front_element(const Drawing& d, const Frame& frame, const std::strin
   for (const Vec2 p : soil)
     if (std::abs(p.x - front.x) < reach) top = std::max(top, p.y);
   top = std::min(top + 12 / d.layout.metre, d.view.hi.y - 14 / d.layout.metre);
-  const double bottom = d.terrain.closed || d.terrain.bed.empty() ? front.y : bed_height(d.terrain.bed, front.x);
+  const double bottom = d.terrain.closed || d.terrain.bed.empty() ? front.y : height_beneath(d.terrain.bed, front);
   d.sheet.script.data("front" + tag, std::array{Vec2{front.x, bottom}, Vec2{front.x, top}});
   d.sheet.script("set label ", literal("front " + fixed(front.x - d.terrain.left_boundary, 2) + " m"), " at ", front.x,
                  ",", top, " center offset 0,0.7 front font 'sans-serif:Bold,10' textcolor rgb '", vermillion, "'");

@@ -13,29 +13,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t terms = std::size(energy_terms), columns = 6 + terms + 1;
+constexpr std::string_view first_header = "time_s,step,front_m,centre_of_mass_x_m,kinetic_energy_J_per_m,max_speed_m_s";
+constexpr std::size_t terms = std::size(energy_terms), first_columns = 6, all_columns = first_columns + terms + 1;
 
 const std::string& header() {
   static const std::string text = [] {
-    std::string names = "time_s,step,front_m,centre_of_mass_x_m,kinetic_energy_J_per_m,max_speed_m_s";
+    std::string names(first_header);
     for (const EnergyTerm& term : energy_terms) names += std::string(",") + term.key;
     return names + ",created_J_m";
   }();
   return text;
 }
 
-bool parse(const std::vector<std::string>& fields, HistoryRow& row) {
+bool parse(const std::vector<std::string>& fields, std::size_t columns, HistoryRow& row) {
   if (fields.size() != columns) return false;
   const auto number = [&](std::size_t i, auto& value) {
     const char* end = fields[i].data() + fields[i].size();
     const auto [stop, error] = std::from_chars(fields[i].data(), end, value);
     return error == std::errc() && stop == end;
   };
-  double created = 0.0;  // follows from the others
   bool good = number(0, row.time) && number(1, row.step) && number(2, row.front) && number(3, row.centre_of_mass_x) &&
-              number(4, row.kinetic_energy) && number(5, row.max_speed) && number(columns - 1, created);
-  for (std::size_t i = 0; i < terms; ++i) good = good && number(6 + i, row.energy.*energy_terms[i].value);
-  return good;
+              number(4, row.kinetic_energy) && number(5, row.max_speed);
+  if (columns == first_columns) return good;
+  for (std::size_t i = 0; i < terms; ++i) good = good && number(first_columns + i, row.energy.*energy_terms[i].value);
+  double created = 0.0;  // follows from the others
+  return good && number(columns - 1, created);
 }
 
 std::string line_of(const HistoryRow& row) {
@@ -62,10 +64,12 @@ std::vector<HistoryRow> read_history(const fs::path& path) {
   const std::string content = read_file(path, max_bytes);
   CsvRows lines(content);
   if (!lines.next()) bad_line(path, 1, "the header is missing");
-  if (lines.text() != header()) bad_line(path, 1, "is not the header of a history (" + header() + ")");
+  const std::size_t columns = lines.text() == first_header ? first_columns : all_columns;
+  if (columns == all_columns && lines.text() != header())
+    bad_line(path, 1, "is not the header of a history (" + header() + ")");
   std::vector<HistoryRow> rows;
   while (lines.next())
-    if (!parse(lines.fields(), rows.emplace_back()))
+    if (!parse(lines.fields(), columns, rows.emplace_back()))
       bad_line(path, static_cast<std::size_t>(lines.line()), "is not " + std::to_string(columns) + " numbers");
   if (!content.ends_with('\n')) bad_line(path, static_cast<std::size_t>(lines.line()), "the line does not end");
   return rows;

@@ -14,7 +14,8 @@ namespace talus {
 /// @throws IoError naming the path; an older file is then untouched
 void write_history(const std::filesystem::path& path, std::span<const HistoryRow> rows);
 
-/// Reads them back, bit for bit; a resumed run continues from these.
+/// Reads them back, bit for bit; a resumed run continues from these. A file of an earlier version, with six columns,
+/// has no energy.
 /// @throws IoError naming the path and the line
 std::vector<HistoryRow> read_history(const std::filesystem::path& path);
 

@@ -8,10 +8,11 @@
 
 namespace talus {
 
-/// The rigid ground. An open bed runs from left to right, the soil lies above it; a closed one is a ring that is walked
-/// counter-clockwise and holds the soil inside.
+/// The rigid ground. An open bed runs from its left end to its right end, with the soil on its left as it is walked: it
+/// may have vertical faces and overhangs. A closed one is a ring that is walked counter-clockwise and holds the soil
+/// inside.
 struct Terrain {
-  std::vector<Vec2> bed;    ///< vertices [m]; open: x strictly increasing; closed: first vertex not repeated at the end
+  std::vector<Vec2> bed;    ///< vertices [m]; open: least x first, greatest last; closed: first not repeated at the end
   bool closed = false;      ///< the bed is a ring
   bool left_wall = true;    ///< a vertical wall stands on the first bed vertex
   bool right_wall = false;  ///< a vertical wall stands on the last bed vertex

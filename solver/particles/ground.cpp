@@ -219,11 +219,30 @@ FittedLine without_noise(const Polyline& line, double dx) {
   return fitted;
 }
 
+/// Runs of vertices that lie behind the line by more than a particle could have reached.
+void count_notches(const Polyline& open, double dx, FittedLine& filled) {
+  const Ground ground({filled.line});
+  bool in_notch = false;
+  for (const Vec2& v : open.vertices) {
+    const double depth = -ground.nearest(v).distance;
+    const bool deep = depth > shallowest_notch * dx;
+    filled.notches += deep && !in_notch ? 1 : 0;
+    filled.deepest_notch = std::max(filled.deepest_notch, deep ? depth : 0.0);
+    in_notch = deep;
+  }
+}
+
 }  // namespace
 
 FittedLine fit_line(const Polyline& line, double dx) {
   FittedLine fitted = without_noise(line, dx);
-  fitted.line = without_narrow_notches(fitted.line, dx);
+  if (fitted.line.vertices.size() != line.vertices.size()) {
+    const Ground smooth({fitted.line});
+    for (const Vec2& v : line.vertices) fitted.moved = std::max(fitted.moved, std::abs(smooth.nearest(v).distance));
+  }
+  const Polyline open = fitted.line;
+  fitted.line = without_narrow_notches(open, dx);
+  if (!(fitted.line == open)) count_notches(open, dx, fitted);
   return fitted;
 }
 

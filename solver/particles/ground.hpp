@@ -14,6 +14,9 @@ struct FittedLine {
   Polyline line;
   double noise = 0.0;      ///< standard deviation of the survey's noise across the line [m]; 0 where it cannot be told
   double tolerance = 0.0;  ///< vertices nearer than this to the line through others were taken out [m]
+  double moved = 0.0;      ///< greatest distance of a given vertex from the line, notches that were filled apart [m]
+  int notches = 0;         ///< filled
+  double deepest_notch = 0.0;  ///< [m]
 };
 
 /// Takes out what is finer than the particles can see.

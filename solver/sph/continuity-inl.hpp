@@ -29,6 +29,17 @@ HWY_INLINE void add_velocity_gradient(Gradient<Real>& L, Vector<Real> VF_v_ij, V
   L.yy = fnma(VF_v_ij.y, r_ij.y, L.yy);
 }
 
+/// Density of a particle in all pair sums, V = m/rho: its own, but at least a quarter of rho0.
+/// Loose soil has no pressure to keep its density up (apply_tension_cutoff). With V = m/rho alone, particles that fly
+/// apart would reach rho = 0 and V without bound in finite time; with V bounded, their density decays and never
+/// vanishes. m = rho V stays, so that pairs conserve momentum.
+/// @param least  least_density(rho0)
+template <class Real>
+HWY_INLINE Real pair_density(Real rho, Real least) {
+  return max(rho, least);
+}
+HWY_INLINE double least_density(double rho0) { return 0.25 * rho0; }
+
 /// drho_i/dt = sum_j m_j (v_i - v_j) . grad_i W_ij                          [Z20] Eq. 1
 /// Adds the term of one neighbour, m_j = rho_j V_j. With rho_i instead of rho_j it is the volume form (Colagrossi &
 /// Landrini 2003), which is the same where the density is uniform and stays right across the layers of a slide; that

@@ -50,7 +50,7 @@ struct Packer {
 
   HWY_INLINE void pack(PackedFlow& f, const FlowConstants& k, const Soil& soil, const StateV& s, std::size_t i,
                        std::size_t count) const {
-    HWY_ALIGN double rho0[lanes];
+    HWY_ALIGN double rho0[lanes], least[lanes];
     HWY_ALIGN float material[lanes] = {};
     std::fill_n(rho0, lanes, k.soils[0].eos.rho0);
     if (k.soils.size() > 1)
@@ -58,12 +58,13 @@ struct Packer {
         material[l] = static_cast<float>(soil.material[i + l]);
         rho0[l] = k.soils[static_cast<std::size_t>(soil.material[i + l])].eos.rho0;
       }
-    const Wide q = s.rho / load(rho0, lanes) - each(1.0);
+    std::transform(rho0, rho0 + lanes, least, least_density);
+    const Wide q = s.rho / load(rho0, lanes) - each(1.0), rho = pair_density(s.rho, load(least, lanes));
     const Vector<Wide> x{s.x - each(f.fixed.lo.x), s.y - each(f.fixed.lo.y)};
     store_groups(fixed_point(s.x, f.fixed.lo.x, per_quantum), fixed_point(s.y, f.fixed.lo.y, per_quantum), narrow(s.vx),
                  narrow(s.vy), f.soil.motion.data() + 4 * i, count);
     const Wide m = one_mass ? mass : load(soil.m.data() + i, count);
-    store_groups(narrow(m / s.rho), narrow(dynamic_density(q, g_per_c2, x)), narrow(s.rho), load(material),
+    store_groups(narrow(m / rho), narrow(dynamic_density(q, g_per_c2, x)), narrow(rho), load(material),
                  f.soil.density.data() + 4 * i, count);
     store(narrow(q), f.soil.q.data() + i, count);
   }

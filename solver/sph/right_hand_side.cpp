@@ -103,10 +103,14 @@ struct Passes {
     return {vector(walls.normal(j)), walls.depth[j], boundary(j).slip == WallSlip::free_slip};
   }
   double q(std::size_t j) const { return SoilPoint{k, soil, nullptr, j}.q(); }
+  double density(std::size_t j) const {
+    return pair_density(soil.rho[j], least_density(SoilPoint{k, soil, nullptr, j}.parameters(j).eos.rho0));
+  }
+  double volume(std::size_t j) const { return soil.m[j] / density(j); }
 
   template <class Model>
   void update_stress(std::size_t i) const {
-    const double c2 = k.c_s * k.c_s, rho_i = soil.rho[i];
+    const double c2 = k.c_s * k.c_s, rho_i = density(i);
     const bool by_mass = k.numerics.continuity == Continuity::mass,
                diffuse = k.numerics.density_filter == DensityFilter::delta_sph;
     const Vector<double> v_i = vector(soil.velocity(i)), g_per_c2{k.g.x / c2, k.g.y / c2};
@@ -115,8 +119,8 @@ struct Passes {
     auto sums = FlowRateSums<double>::zero();
     double tan_phi = soil.tan_phi[i];
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
-      const double VF = soil.m[j] / soil.rho[j] * minus_F(r2);
-      sums.add(VF, soil.rho[j], v_i - vector(soil.velocity(j)), r, by_mass);
+      const double VF = volume(j) * minus_F(r2);
+      sums.add(VF, density(j), v_i - vector(soil.velocity(j)), r, by_mass);
       if (diffuse && soil.material[j] == soil.material[i])
         sums.diffusion = add_diffusion(sums.diffusion, VF, dynamic(j) - dynamic_i);
     });
@@ -134,7 +138,7 @@ struct Passes {
   void update_wall_stress(std::size_t w) const {
     auto sum = WallStressSum<double>::zero();
     for_neighbours(cells.soil, soil, walls.position(w), support2, [&](std::size_t j, Vector<double> r, double r2) {
-      sum.add(kernel.W(std::sqrt(r2)), {stress(j), soil.p[j], soil.rho[j], q(j)}, dot(vector(k.g), r),
+      sum.add(kernel.W(std::sqrt(r2)), {stress(j), soil.p[j], density(j), q(j)}, dot(vector(k.g), r),
               1.0 / (k.c_s * k.c_s));
     });
     const WallSlip slip = boundary(w).slip;
@@ -151,14 +155,14 @@ struct Passes {
   void update_acceleration(std::size_t i) const {
     const ArtificialViscosity<double, Quadratic> viscosity(k, 1.0);
     const Vector<double> v_i = vector(soil.velocity(i));
-    const double rho_i = soil.rho[i], viscosity_of_i = viscosity.of_particle(rho_i);
+    const double rho_i = density(i), viscosity_of_i = viscosity.of_particle(rho_i);
     const Symmetric<double> s_i = stress(i);
     Vector<double> sum{0.0, 0.0};
     auto pair_powers = PairPowers<double>::zero();
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double v_dot_r = dot(v_i - vector(soil.velocity(j)), r);
-      const double Pi = viscosity(viscosity_of_i, rho_i, soil.rho[j], v_dot_r, r2);
-      const double VF = soil.m[j] / soil.rho[j] * minus_F(r2);
+      const double Pi = viscosity(viscosity_of_i, rho_i, density(j), v_dot_r, r2);
+      const double VF = volume(j) * minus_F(r2);
       sum = add_force(sum, s_i, stress(j), Pi, VF, r);
       if (powers) pair_powers.add_soil(Pi, VF, v_dot_r);
     });

@@ -164,6 +164,12 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   other["material"] = {{"unit_weight_kN_m3", 19}, {"friction_angle_deg", 24}, {"cohesion_kPa", 5}};
   other["slide"]["outlines"][0]["material"] = {{"unit_weight_kN_m3", 18}, {"cohesion_kPa", 2}};
   mutations.spoil(other);
+  other = example("surfaces");
+  for (const json& beyond :
+       {json{{"ground_beyond_m", {{24, 6}, {60, 4}}}}, json{{"ground_beyond_csv", "case-bed.csv"}}}) {
+    other["terrain"] = beyond;
+    mutations.spoil(other);
+  }
   std::set<std::string> keys;
   collect(test::SchemaCheck("case").document(), "", keys);
   for (const std::string& key : keys) EXPECT_TRUE(mutations.visited().contains(key)) << key << " was never spoilt";

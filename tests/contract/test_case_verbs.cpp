@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -45,6 +47,40 @@ TEST(Validate, SoundCase) {
   EXPECT_GT(json["field"]["captured_variance"], 0.0);
   EXPECT_EQ(json["hash"].get<std::string>().size(), 16u);
   EXPECT_TRUE(json["warnings"].is_array());
+}
+
+TEST(Validate, SaysWhatWasMadeOfTheGround) {
+  const auto report = [](const std::string& name, const std::string& set = "") {
+    return nlohmann::json::parse(
+        talus("validate --json " + std::string(TALUS_SOURCE_DIR) + "/solver/cases/" + name + ".json" + set).out);
+  };
+  const auto road = report("road-slope");
+  EXPECT_EQ(road["ground"]["source"], "the bed joined from the surfaces of the slide");
+  EXPECT_EQ(road["ground"]["vertices"], (nlohmann::json{{"given", 23}, {"kept", 23}}));
+  EXPECT_EQ(road["ground"]["moved_m"], 0.0);
+  EXPECT_EQ(road["ground"]["left_end"]["kind"], "wall");
+  EXPECT_EQ(road["ground"]["right_end"], (nlohmann::json{{"kind", "open"}, {"x_m", 95.0}, {"y_m", 8.1}}));
+  EXPECT_EQ(road["slide"]["x_m"], (nlohmann::json{8.0, 35.0}));
+  EXPECT_EQ(road["slide"]["direction"], "right");
+  EXPECT_NEAR(road["slide"]["thickness_m"].get<double>(), 6.8, 0.3);
+  const auto coarse = report("road-slope", " --set particle_spacing_m=3");
+  EXPECT_LT(coarse["ground"]["vertices"]["kept"], 23) << "vertices nearer than the spacing are taken out";
+  EXPECT_GT(coarse["ground"]["moved_m"], 0.0);
+  EXPECT_LE(coarse["ground"]["moved_m"], 0.5 * 3);
+}
+
+TEST(Plot, DrawsACaseBeforeItIsRun) {
+  const std::string out = ::testing::TempDir() + "input-case.svg";
+  const Outcome drawn = talus("plot " + good + " --walls --out " + out);
+  EXPECT_EQ(drawn.code, 0);
+  EXPECT_EQ(drawn.out, out + "\n");
+  std::ifstream file(out);
+  const std::string svg(std::istreambuf_iterator<char>(file), {});
+  EXPECT_NE(svg.find("Every key"), std::string::npos);
+  EXPECT_NE(svg.find("wall particles"), std::string::npos);
+  std::remove(out.c_str());
+  EXPECT_EQ(talus("plot " + bad + " --out " + out).code, 3);
+  EXPECT_EQ(talus("plot /tmp --out " + out).code, 2) << "a directory has its figures in it";
 }
 
 TEST(Validate, BadCase) {

@@ -27,12 +27,13 @@ inline double depth_below(const Polyline& bed, Vec2 p) {
 }
 
 /// A bed of cliffs, ledges, notches, V corners and thin walls, as chance has it; it falls by some 20 m over 40 m.
-inline Polyline random_bed(std::mt19937& random) {
+/// @param overhangs  faces that lean over the foot are among them
+inline Polyline random_bed(std::mt19937& random, bool overhangs = false) {
   const auto uniform = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
   Polyline bed{{{0, 20}, {8, 20}}, false};
   double x = 8, y = 20;
   while (x < 34) {
-    switch (std::uniform_int_distribution<int>(0, 5)(random)) {
+    switch (std::uniform_int_distribution<int>(0, overhangs ? 6 : 5)(random)) {
       case 0: {  // cliff
         y -= uniform(1, 8);
         bed.vertices.push_back({x += 0.001, y});
@@ -55,6 +56,14 @@ inline Polyline random_bed(std::mt19937& random) {
         bed.vertices.push_back({x += uniform(1, 4), y += uniform(0, 0.6)});
         break;
       }
+      case 6: {  // overhang: back under the crest, then down a vertical face
+        const double height = uniform(1, 5), back = uniform(0.2, 1.5);
+        const Vec2 crest = bed.vertices.back();
+        if (crest.x - bed.vertices[bed.vertices.size() - 2].x < back + 1.0) break;  // too thin a crest
+        bed.vertices.push_back({x -= back, y -= 0.5 * height});
+        bed.vertices.push_back({x, y -= 0.5 * height});
+        break;
+      }
       default: {  // slope
         const double run = uniform(1, 8);
         y -= run * uniform(0, 1.2);
@@ -73,11 +82,11 @@ struct RandomBeds {
 };
 
 /// Lets a block fall onto random beds and slide; every fourth bed has free slip.
-inline RandomBeds slide_over_random_beds(int from, int to) {
+inline RandomBeds slide_over_random_beds(int from, int to, bool overhangs = false) {
   RandomBeds seen;
   for (int seed = from; seed < to; ++seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
-    const Polyline bed = random_bed(random);
+    const Polyline bed = random_bed(random, overhangs);
     Model m;
     set_ground(m, {bed.vertices, false, true, false, 30, 0});
     m.slide = {{{{1, 20}, {7, 20}, {7, 24}, {1, 24}}, 0}};

@@ -208,7 +208,7 @@ TEST(LoadCase, CollectsTheFaultsOfAllSections) {
   document.erase("title");
   document["material"]["cohesion_Pa"] = "5 kPa";
   document["material"]["friction_angle"] = 30;
-  document["terrain"]["bed_m"][1] = {0, 0};
+  document["terrain"]["bed_m"][1] = {-1, 0};
   document["study"] = {{"seed", -1}};
   const auto faults = faults_of(document);
   ASSERT_EQ(faults.size(), 5u);

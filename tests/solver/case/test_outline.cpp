@@ -79,46 +79,57 @@ TEST(BetweenSurfaces, TakesCliffsAndShortSurfaces) {
   EXPECT_TRUE(between_surfaces(Points{{0, 0}, {1, 0}}, Points{{2, -1}, {3, -1}}).empty()) << "no common extent";
 }
 
-TEST(BedHeight, IsLinearBetweenVerticesAndConstantBeyondTheEnds) {
-  const Points bed = {{0, 10}, {10, 0}, {40, 0}};
-  EXPECT_DOUBLE_EQ(bed_height(bed, 2.5), 7.5);
-  EXPECT_DOUBLE_EQ(bed_height(bed, 30), 0);
-  EXPECT_DOUBLE_EQ(bed_height(bed, -3), 10);
-  EXPECT_DOUBLE_EQ(bed_height(bed, 99), 0);
+TEST(HeightBeneath, IsThatOfTheHighestCrossingBelowThePoint) {
+  const Points overhang = {{0, 10}, {10, 10}, {8, 6}, {8, 0}, {40, 0}};
+  EXPECT_DOUBLE_EQ(height_beneath(overhang, {5, 12}), 10);
+  EXPECT_DOUBLE_EQ(height_beneath(overhang, {9, 12}), 10);
+  EXPECT_DOUBLE_EQ(height_beneath(overhang, {9, 4}), 0) << "beneath the overhang";
+  EXPECT_DOUBLE_EQ(height_beneath(overhang, {30, 1}), 0);
+  EXPECT_DOUBLE_EQ(height_beneath(overhang, {50, 3}), 3) << "no bed there";
 }
 
-/// Deepest point below the bed, by sampling the outline densely.
-double sampled_depth(const Points& outline, const Points& bed) {
-  double worst = 0.0;
-  for (std::size_t k = 0; k < outline.size(); ++k)
-    for (int i = 0; i <= 1000; ++i) {
-      const Vec2 a = outline[k], b = outline[(k + 1) % outline.size()], p = a + (i / 1000.0) * (b - a);
-      for (std::size_t s = 0; s + 1 < bed.size(); ++s)
-        if (bed[s].x <= p.x && p.x <= bed[s + 1].x) {
-          const double y = bed[s].y + (bed[s + 1].y - bed[s].y) * (p.x - bed[s].x) / (bed[s + 1].x - bed[s].x);
-          worst = std::max(worst, y - p.y);
-        }
-    }
-  return worst;
-}
-
-TEST(DepthBelowBed, AgreesWithDenseSampling) {
+/// Random outlines that hang over or dip into a random bed, star-shaped about their middle.
+TEST(ReachOutsideRing, FindsWhatDenseSamplingFinds) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> u(0.0, 10.0);
+  int deep = 0;
   for (int trial = 0; trial < 50; ++trial) {
     Points bed, outline;
     for (int k = 0; k <= 10; ++k) bed.push_back({static_cast<double>(k), 0.3 * u(random)});
-    for (int k = 0; k < 5; ++k) outline.push_back({u(random), u(random)});
-    EXPECT_NEAR(depth_below_bed(outline, bed).depth, sampled_depth(outline, bed), 0.05) << trial;
+    for (int k = 0; k < 5; ++k) {
+      const double angle = 2 * M_PI * k / 5, r = 1 + 0.2 * u(random);
+      outline.push_back({5 + r * std::cos(angle), 3.5 + r * std::sin(angle)});
+    }
+    // The deepest sample of the outline's edge in the rock, by its distance to the bed.
+    double sampled = 0.0;
+    for (std::size_t k = 0; k < outline.size(); ++k)
+      for (int i = 0; i <= 200; ++i) {
+        const Vec2 p = outline[k] + (i / 200.0) * (outline[(k + 1) % outline.size()] - outline[k]);
+        double distance = 1e300, height = 0.0;
+        for (std::size_t s = 0; s + 1 < bed.size(); ++s) {
+          const Vec2 a = bed[s], ab = bed[s + 1] - a;
+          distance = std::min(distance, norm(p - a - std::clamp(dot(p - a, ab) / norm2(ab), 0.0, 1.0) * ab));
+          if (a.x <= p.x && p.x <= bed[s + 1].x) height = a.y + ab.y * (p.x - a.x) / ab.x;
+        }
+        if (p.y < height) sampled = std::max(sampled, distance);
+      }
+    const double depth = reach_outside_ring(outline, room_above(bed, 10)).depth;
+    EXPECT_GE(depth, 0.5 * sampled - 1e-9) << trial;
+    EXPECT_EQ(depth > 1e-9, sampled > 0.0) << trial;
+    deep += sampled > 0.3 ? 1 : 0;
   }
+  EXPECT_GT(deep, 10);
 }
 
-TEST(DepthBelowBed, SeesAHumpUnderAnEdge) {
-  const Points bed = {{0, 0}, {5, 1}, {10, 0}}, outline = {{1, 0.2}, {9, 0.2}, {9, 3}, {1, 3}};
-  const Penetration in = depth_below_bed(outline, bed);
-  EXPECT_NEAR(in.depth, 0.8, 1e-12);
-  EXPECT_EQ(in.at.x, 5.0);
-  EXPECT_EQ(depth_below_bed(Points{{1, 1}, {9, 1}, {5, 3}}, bed).depth, 0.0);
+TEST(ReachOutsideRing, SeesAHumpUnderAnEdgeAndAWallAcross) {
+  const Points hump = room_above(Points{{0, 0}, {5, 1}, {10, 0}}, 5), outline = {{1, 0.2}, {9, 0.2}, {9, 3}, {1, 3}};
+  EXPECT_NEAR(reach_outside_ring(outline, hump).depth, 0.8, 1e-12);
+  EXPECT_EQ(reach_outside_ring(Points{{1, 1}, {9, 1}, {5, 3}}, hump).depth, 0.0);
+  const Points wall = room_above(Points{{0, 0}, {5, 0}, {5, 4}, {5.5, 4}, {5.5, 0}, {10, 0}}, 5);
+  EXPECT_NEAR(reach_outside_ring(Points{{1, 0}, {9, 0}, {9, 2}, {1, 2}}, wall).depth, 2 * (0.5 * 2) / (2 * 2.5), 1e-9);
+  const Points cliff = room_above(Points{{0, 10}, {10, 10}, {10, 0}, {40, 0}}, 20);
+  EXPECT_NEAR(reach_outside_ring(Points{{9.9, 0}, {15, 0}, {15, 8}, {9.9, 8}}, cliff).depth, 0.1, 0.02)
+      << "into the face, not below the crest";
 }
 
 TEST(ReachOutsideRing, MeasuresOverhangAndCoveredRock) {

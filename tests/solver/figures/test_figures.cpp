@@ -3,6 +3,7 @@
 #include "case/load.hpp"
 #include "example_study.hpp"
 #include "figures/figures.hpp"
+#include "io/history.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
 #include "reading.hpp"
@@ -57,10 +58,28 @@ void write_result(const fs::path& directory) {
   write_file_atomically(directory / "result.json", result_json(result, from).dump(2));
 }
 
+void write_moving_history(const fs::path& directory) {
+  std::vector<HistoryRow> rows(2);
+  rows[1].time = 2;
+  rows[1].energy = {.kinetic = 20, .potential = -100, .friction = 90, .boundaries = -12};
+  write_history(directory / "history.csv", rows);
+}
+
 std::vector<std::string> names(const std::vector<fs::path>& paths) {
   std::vector<std::string> all;
   for (const fs::path& path : paths) all.push_back(path.filename().string());
   return all;
+}
+
+TEST(Figures, ARunOfAnEarlierVersionHasNoEnergyToDraw) {
+  const test::TemporaryDirectory directory;
+  write_case(directory.path());
+  write_snapshots(directory / "snapshots.vtkhdf");
+  write_result(directory.path());
+  const auto draws_energy = [&] { return std::ranges::count(names(plot_run(directory.path())), "energy.svg") > 0; };
+  EXPECT_FALSE(draws_energy()) << "no history";
+  write_history(directory / "history.csv", std::vector<HistoryRow>(2));
+  EXPECT_FALSE(draws_energy()) << "a history without energy";
 }
 
 TEST(Figures, ARunIsDrawnFromItsFiles) {
@@ -68,11 +87,12 @@ TEST(Figures, ARunIsDrawnFromItsFiles) {
   write_case(directory.path());
   write_snapshots(directory / "snapshots.vtkhdf");
   write_result(directory.path());
+  write_moving_history(directory.path());
   const std::vector<fs::path> drawn = plot_run(directory.path());
   EXPECT_EQ(names(drawn),
             (std::vector<std::string>{"speed.svg", "speed.png", "friction_angle.svg", "friction_angle.png", "end.svg",
-                                      "end.png", "snapshot_000.svg", "snapshot_000.png", "snapshot_001.svg",
-                                      "snapshot_001.png", "snapshot_002.svg", "snapshot_002.png"}));
+                                      "end.png", "energy.svg", "energy.png", "snapshot_000.svg", "snapshot_000.png",
+                                      "snapshot_001.svg", "snapshot_001.png", "snapshot_002.svg", "snapshot_002.png"}));
   for (const fs::path& path : drawn) {
     EXPECT_EQ(path.parent_path(), directory / "figures");
     if (path.extension() == ".png") {

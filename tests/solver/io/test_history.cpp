@@ -79,6 +79,18 @@ TEST(History, HasAColumnForEachUnit) {
   EXPECT_TRUE(read_history(dir / "h.csv").empty());
 }
 
+TEST(History, OfAnEarlierVersionHasNoEnergy) {
+  const TemporaryDirectory dir;
+  const std::string earlier = header.substr(0, header.find(",kinetic_J_m")) + "\n";
+  write_file_atomically(dir / "h.csv", earlier + "0.5,2,3.25,4,5,6\n");
+  const auto rows = read_history(dir / "h.csv");
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].max_speed, 6);
+  EXPECT_EQ(rows[0].energy, EnergyBudget());
+  write_file_atomically(dir / "h.csv", earlier + "0.5,2,3.25,4,5,6,7\n");
+  EXPECT_NE(io_error([&] { read_history(dir / "h.csv"); }).find("is not 6 numbers"), std::string::npos);
+}
+
 TEST(History, RefusesOtherFilesByLine) {
   const TemporaryDirectory dir;
   const auto message_for = [&](const std::string& text) {

@@ -98,6 +98,29 @@ TEST(GroundContact, AParticleSlidesByCoulombsLaw) {  // a = g (sin 35 - cos 35 t
   EXPECT_NEAR(norm(soil.velocity(0)), 2.0 * 9.81 * (std::sin(slope) - std::cos(slope) * tan_phi), 1e-9);
 }
 
+/// A block that falls over a cliff whose foot lies `lean` to the right of its crest.
+RunResult fall_over_cliff(double lean) {
+  Model m;
+  set_ground(m, {{{0, 10}, {10, 10}, {10 + lean, 0}, {40, 0}}, false, true, false, 16, 0});
+  m.slide = {{{{2, 10}, {10, 10}, {10, 13}, {2, 13}}, 0}};
+  m.materials = {{"soil", 2000, 20 * degree, 0, 0}};
+  m.dx = 0.5;
+  m.numerics.c_s = 60;
+  m.time.end = 4.0;
+  const ParticlePlan plan = plan_particles(m);
+  Simulation simulation(m, plan, material_properties(m, plan));
+  while (!simulation.finished()) simulation.step(m.time.end);
+  return simulation.result();
+}
+
+TEST(GroundContact, AVerticalFaceIsAsGoodAsOneThatLeans) {
+  const RunResult vertical = fall_over_cliff(0.0), leaning = fall_over_cliff(1e-6);
+  EXPECT_EQ(vertical.penetrated, 0);
+  EXPECT_GT(vertical.measures.influence_zone, 11.0) << "soil falls over the edge";
+  EXPECT_NEAR(vertical.measures.centre_of_mass_x, leaning.measures.centre_of_mass_x, 0.02);
+  EXPECT_NEAR(vertical.measures.influence_zone, leaning.measures.influence_zone, 0.5);
+}
+
 TEST(GroundContact, HoldsOnRandomBeds) {
   const RandomBeds seen = slide_over_random_beds(0, 16);
   EXPECT_LT(seen.deepest, 1e-6);

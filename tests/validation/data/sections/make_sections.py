@@ -4,8 +4,9 @@
     apt-get source --download-only qgis                       # dtm.tif, dem.tif and hill.tif
     pip install numpy laspy lazrs tifffile imagecodecs
 
-Every section is a case NAME.json and two or three CSV files of chainage and elevation in metres: NAME-ground.csv, NAME-slip.csv and NAME-bed.csv,
-which is the ground outside the slide and the slip surface inside it. The slip surfaces are assumed unless SOURCES.md says otherwise.
+Every section is a case NAME.json and CSV files of chainage and elevation in metres: NAME-ground.csv, NAME-slip.csv and
+NAME-bed.csv, which is the ground outside the slide and the slip surface inside it. The slip surfaces are assumed unless
+SOURCES.md says otherwise.
 """
 
 import json
@@ -26,7 +27,7 @@ def unique_chainage(chainage, elevation):
 
 
 def ground_returns(path):
-    """(points, 3): coordinates of the points that the survey classified as ground (class 2), in the units of the file."""
+    """(points, 3): coordinates of the points that the survey classified as ground (class 2), in units of the file."""
     import laspy
 
     cloud = laspy.read(path)
@@ -50,7 +51,7 @@ def elevation_at(profile, x):
 
 
 def arc(ground, left, right, depth, vertices=60):
-    """Circular slip surface between the ground at `left` and at `right` [m], `depth` [m] below the chord at its middle."""
+    """Circular slip surface from the ground at `left` to that at `right`, `depth` below the middle of its chord [m]."""
     ends = np.array([[x, elevation_at(ground, x)] for x in (left, right)])
     along = ends[1] - ends[0]
     half = 0.5 * np.hypot(*along)
@@ -73,11 +74,16 @@ def write(path, profile):
     path.write_text("\n".join(rows) + "\n")
 
 
+LEFT = {"left_end": "open", "right_end": "wall"}  # ends of a section whose slide goes to the left
+
+
 def case(name, title, description, spacing, material, end, terrain=None, **rest):
+    """The case as a dictionary; the run ends at rest, or at `end` [s]."""
     return {"title": title, "description": description, "particle_spacing_m": spacing,
             "terrain": {"bed_csv": f"{name}-bed.csv", **(terrain or {})},
             "slide": {"ground_surface_csv": f"{name}-ground.csv", "slip_surface_csv": f"{name}-slip.csv"},
-            "material": material, "time": {"end_s": end, "stop_at_rest": True}, **rest, "study": {"realizations": 1, "seed": 1}}
+            "material": material, "time": {"end_s": end, "stop_at_rest": True}, **rest,
+            "study": {"realizations": 1, "seed": 1}}
 
 
 def save(name, ground, slip, document):
@@ -85,17 +91,18 @@ def save(name, ground, slip, document):
     write(HERE / f"{name}-slip.csv", slip)
     write(HERE / f"{name}-bed.csv", bed(ground, slip))
     (HERE / f"{name}.json").write_text(json.dumps(document, indent=1) + "\n")
-    print(f"{name}: {len(ground)} ground vertices, slide {area(ground, slip):.1f} m2, {document['particle_spacing_m']} m")
+    print(f"{name}: {len(ground)} vertices of the ground, slide of {area(ground, slip):.1f} m2")
 
 
 def area(ground, slip):
+    """Area of the slide [m2]."""
     x = np.unique(np.concatenate([ground[:, 0], slip[:, 0]]))
     x = x[(x >= slip[0, 0]) & (x <= slip[-1, 0])]
     return float(np.trapezoid(elevation_at(ground, x) - elevation_at(slip, x), x))
 
 
 def escarpment(raw):
-    """Profile of the 0.2 m wide strip along the eastern edge of the tile, northwards: every ground return is a vertex."""
+    """Profile of a strip 0.3 m wide along the eastern edge of the tile, northwards: every ground return is a vertex."""
     points = ground_returns(raw / "append-bug.laz")
     points = points[points[:, 0] > 698999.7]
     return unique_chainage(points[:, 1] - 6259200, points[:, 2])
@@ -106,16 +113,18 @@ def scarp(raw):
     slip = arc(ground, 155, 228, 12)
     material = {"name": "slope debris", "density_kg_m3": 1900, "friction_angle_deg": 25, "cohesion_Pa": 500}
     save("scarp", ground, slip, case(
-        "scarp", "Scarp surveyed by lidar", "Ground returns of an airborne lidar survey in a strip 0.2 m wide, with their noise and gaps. The slip surface is assumed.",
+        "scarp", "Scarp surveyed by lidar",
+        "Ground returns of an airborne lidar survey in a strip 0.3 m wide. The slip surface is assumed.",
         0.8, material, 40, numerics={"sound_speed_m_s": 120}))
 
 
 def ledges(raw):
     ground = clip(escarpment(raw), 430, 760)
     slip = arc(ground, 463, 508, 6)
-    material = {"name": "soft clay", "density_kg_m3": 1700, "friction_angle_deg": 14, "cohesion_Pa": 500}
+    material = {"name": "soft clay", "density_kg_m3": 1700, "friction_angle_deg": 14, "cohesion_Pa": 1000}
     save("ledges", ground, slip, case(
-        "ledges", "Ledges surveyed by lidar", "The lower part of the survey of the case scarp: ledges of 6 and 7 m above a plain. The slip surface is assumed.",
+        "ledges", "Ledges surveyed by lidar",
+        "Lower part of the survey of the case scarp: ledges of 6 and 7 m. The slip surface is assumed.",
         0.5, material, 100, numerics={"sound_speed_m_s": 100}))
 
 
@@ -128,8 +137,10 @@ def river_bank(raw):
     slip = arc(ground, 46.6, 62, 3.2)
     material = {"name": "soft clay", "density_kg_m3": 1500, "friction_angle_deg": 12, "cohesion_Pa": 500}
     save("river-bank", ground, slip, case(
-        "river-bank", "River bank surveyed by lidar", "Ground returns of an airborne lidar survey in a strip 3 m wide. The slide goes to the left. The slip surface is assumed.",
-        0.2, material, 20, {"left_end": "open", "right_end": "wall"}, numerics={"sound_speed_m_s": 60}))
+        "river-bank", "River bank surveyed by lidar",
+        "Ground returns of an airborne lidar survey in a strip 3 m wide. The slide goes to the left. "
+        "The slip surface is assumed.",
+        0.2, material, 20, LEFT, numerics={"sound_speed_m_s": 60}))
 
 
 def valley_side(raw):
@@ -137,10 +148,12 @@ def valley_side(raw):
     cells = np.arange(150, 420)
     ground = np.column_stack([321001 + 2 * cells, grid(raw / "dtm.tif")[60, cells]])
     slip = arc(ground, 321360, 321460, 13)
-    material = {"name": "soft clay", "density_kg_m3": 1700, "friction_angle_deg": 14}
+    material = {"name": "soft clay", "density_kg_m3": 1700, "friction_angle_deg": 10, "cohesion_Pa": 2000,
+                "viscosity_Pa_s": 1000}
     save("valley-side", ground, slip, case(
-        "valley-side", "Valley side on a national grid", "Elevations in whole metres on a grid of 2 m: steps of 1 m. Chainage is the easting. The slip surface is assumed.",
-        1.0, material, 60, numerics={"sound_speed_m_s": 80}))
+        "valley-side", "Valley side on a national grid",
+        "Elevations in whole metres on a grid of 2 m. Chainage is the easting. The slip surface is assumed.",
+        1.0, material, 100, numerics={"sound_speed_m_s": 120}))
 
 
 def alpine(raw):
@@ -150,7 +163,8 @@ def alpine(raw):
     slip = arc(ground, 1662.5, 1812.5, 25)
     material = {"name": "broken rock", "density_kg_m3": 2000, "friction_angle_deg": 32}
     save("alpine", ground, slip, case(
-        "alpine", "Alpine valley with a cliff", "Elevations on a grid of 25 m; the slide falls over a cliff of 270 m. The slip surface is assumed.",
+        "alpine", "Alpine valley with a cliff",
+        "Elevations on a grid of 25 m; the slide falls over a cliff of 270 m. The slip surface is assumed.",
         3.0, material, 80, numerics={"sound_speed_m_s": 600}))
 
 
@@ -160,33 +174,42 @@ def hill(raw):
     rows = np.arange(40, 130)
     ground = np.column_stack([cell * rows, grid(raw / "hill.tif")[rows, 153]])
     slip = arc(ground, 1055, 1250, 20)
-    material = {"name": "soft clay", "density_kg_m3": 1600, "friction_angle_deg": 8}
+    material = {"name": "soft clay", "density_kg_m3": 1600, "friction_angle_deg": 8, "viscosity_Pa_s": 1000}
     save("hill", ground, slip, case(
-        "hill", "Hillside above a plain", "Gentle hillside; the slide goes to the left and runs out on a plain. The slip surface is assumed.",
-        1.6, material, 80, {"left_end": "open", "right_end": "wall"}, numerics={"sound_speed_m_s": 100}))
+        "hill", "Hillside above a plain",
+        "Gentle hillside; the slide goes to the left and runs out on a plain. The slip surface is assumed.",
+        1.6, material, 80, LEFT, numerics={"sound_speed_m_s": 130}))
 
 
-def layered(raw):
-    """Problem 1(c) of the ACADS review: profile, interfaces, soils and critical circle as published; strengths halved so that the slope fails."""
-    ground = np.array([[20, 25], [30, 25], [50, 35], [70, 35]], float)
-    centre, radius = np.array([34.121, 43.254]), 18.781
-    left, right = 29.703, 50.991
-    x = np.linspace(left, right, 60)
-    slip = np.column_stack([x, centre[1] - np.sqrt(radius**2 - (x - centre[0]) ** 2)])
-    slip[[0, -1], 1] = elevation_at(ground, [left, right])
-    tops = {"sand": ground, "upper clay": np.array([[20, 25], [30, 25], [40, 27], [50, 29], [54, 31], [70, 31]], float),
-            "lower clay": np.array([[20, 25], [30, 25], [40, 27], [52, 24], [70, 24]], float)}
-    strengths = {"sand": (0.0, 38.0), "upper clay": (5300.0, 23.0), "lower clay": (7200.0, 20.0)}
-    outlines = []
-    for (name, top), bottom in zip(tops.items(), [*list(tops.values())[1:], None]):
-        outline = between(top, slip, bottom)
-        cohesion, friction = strengths[name]
-        material = {"name": name, "cohesion_Pa": cohesion / 2, "friction_angle_deg": round(math.degrees(math.atan(math.tan(math.radians(friction)) / 2)), 3)}
-        outlines.append({"outline_m": outline, "material": material})
-    write(HERE / "layered-bed.csv", bed(np.vstack([[-20, 25], ground, [80, 35]]), slip))
-    document = case("layered", "Slope of three soils", "Problem 1(c) of the ACADS review (Giam and Donald 1989): published profile, interfaces, unit weight and critical circle. "
-                    "Half of the published strengths, so that the slope fails.", 0.25, {"density_kg_m3": 1988, "friction_angle_deg": 20}, 20, {"left_end": "open", "right_end": "wall"}, numerics={"sound_speed_m_s": 60})
+REVIEW = {  # problem 1(c): top of each soil [m], cohesion [Pa], friction angle [deg]; and the critical circle [m]
+    "sand": ([[20, 25], [30, 25], [50, 35], [70, 35]], 0, 38),
+    "upper clay": ([[20, 25], [30, 25], [40, 27], [50, 29], [54, 31], [70, 31]], 5300, 23),
+    "lower clay": ([[20, 25], [30, 25], [40, 27], [52, 24], [70, 24]], 7200, 20)}
+CENTRE, RADIUS, ENDS = (34.121, 43.254), 18.781, (29.703, 50.991)
+
+
+def halved(name, cohesion, friction):
+    """Material with half of the cohesion and of tan(phi)."""
+    half = math.degrees(math.atan(0.5 * math.tan(math.radians(friction))))
+    return {"name": name, "cohesion_Pa": 0.5 * cohesion, "friction_angle_deg": round(half, 3)}
+
+
+def layered(_):
+    """Problem 1(c) of the ACADS review, with half of the published strengths so that the slope fails."""
+    tops = [np.array(top, float) for top, _, _ in REVIEW.values()]
+    ground = np.vstack([[-20, 25], tops[0], [80, 35]])
+    x = np.linspace(*ENDS, 60)
+    y = CENTRE[1] - np.sqrt(RADIUS**2 - (x - CENTRE[0]) ** 2)
+    slip = np.column_stack([x, np.minimum(y, elevation_at(ground, x))])
+    slip[[0, -1], 1] = elevation_at(ground, ENDS)
+    outlines = [{"outline_m": between(top, slip, bottom), "material": halved(name, cohesion, friction)}
+                for (name, (_, cohesion, friction)), top, bottom in zip(REVIEW.items(), tops, [*tops[1:], None])]
+    document = case("layered", "Slope of three soils",
+                    "Problem 1(c) of the ACADS review (Giam and Donald 1989): published profile, interfaces, unit "
+                    "weight and critical circle. Half of the published strengths, so that the slope fails.",
+                    0.25, {"density_kg_m3": 1988, "friction_angle_deg": 20}, 20, LEFT, numerics={"sound_speed_m_s": 60})
     document["slide"] = {"outlines": outlines}
+    write(HERE / "layered-bed.csv", bed(ground, slip))
     (HERE / "layered.json").write_text(json.dumps(document, indent=1) + "\n")
 
 
@@ -207,13 +230,16 @@ def between(top, slip, bottom):
     x = np.unique(np.round(np.concatenate(knots), 4))
     x = x[(x >= slip[0, 0]) & (x <= slip[-1, 0])]
     upper = elevation_at(top, x)
-    lower = elevation_at(slip, x) if bottom is None else np.maximum(elevation_at(slip, x), np.minimum(elevation_at(bottom, x), upper))
+    lower = elevation_at(slip, x)
+    if bottom is not None:
+        lower = np.maximum(lower, np.minimum(elevation_at(bottom, x), upper))
     thick = upper - lower > 1e-3
     first, last = np.flatnonzero(thick)[[0, -1]]
     keep = slice(max(first - 1, 0), last + 2)
     x, upper, lower = x[keep], upper[keep], lower[keep]
     outline = [*zip(x, upper), *zip(x[::-1], lower[::-1])]
-    return [list(map(float, np.round(p, 4))) for k, p in enumerate(outline) if k == 0 or not np.allclose(p, outline[k - 1], atol=1e-6)]
+    distinct = [p for p, last in zip(outline, [None, *outline]) if last is None or not np.allclose(p, last, atol=1e-6)]
+    return [[round(float(x), 4), round(float(y), 4)] for x, y in distinct]
 
 
 SECTIONS = (scarp, ledges, river_bank, valley_side, alpine, hill, layered)
