@@ -64,7 +64,8 @@ TEST(StudyFiles, FaultsNameTheFile) {
   test::write_example_study(directory.path(), test::example_plan(3), test::example_records(3, false), {});
   const std::string table = read_file(directory / "realizations.csv", 10000);
   const std::string header = table.substr(0, table.find('\n') + 1);
-  write_file_atomically(directory / "realizations.csv", header + "0,done,far,1,1,1,1,25,1,100,1,0123456789abcdef,,,,\n");
+  write_file_atomically(directory / "realizations.csv",
+                        header + "0,done,far,1,1,1,1,25,1,100,1,0123456789abcdef,,,,\n");
   EXPECT_TRUE(contains(error_of(directory.path()), "\"far\" is not a number"));
   write_file_atomically(directory / "realizations.csv", header + "0,done,1\n");
   EXPECT_TRUE(contains(error_of(directory.path()), "realizations.csv:2"));
