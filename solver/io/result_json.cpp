@@ -88,7 +88,6 @@ class ObjectIo {
     if (!known) fail(key, "sound, doubtful, invalid or not_assessed");
     value = *known;
   }
-
   /// A list of objects; each(object, element) transfers one.
   template <class T, class Each>
   void list(const char* key, std::vector<T>& elements, const Each& each) {

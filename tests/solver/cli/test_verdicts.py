@@ -48,10 +48,11 @@ class Run(Directory):
             self.assertIn("/numerics/cfl", done.stderr)
             self.assertIn("is too large for integrator", done.stderr)
 
-    def test_a_fixed_step_beyond_stability_is_doubtful(self):
+    def test_an_unstable_run_is_invalid(self):
         # 0.6 h/c: h = 0.6 m, elastic wave of 165 m/s
         settings = ["time.fixed_step_s=0.0022", "numerics.integrator=leapfrog"]
-        quality = self.assert_says("unstable_time_step", "doubtful", *settings)
+        quality = self.assert_says("energy_created", "invalid", *settings)
+        self.assertIn("unstable_time_step", [reason["check"] for reason in quality["reasons"]])
         self.assertIn("still_moving", [reason["check"] for reason in quality["reasons"]])  # the deposit shakes
         self.assertIn("warning: /time/fixed_step_s the fixed time step has the Courant number", self.stderr)
 
