@@ -38,7 +38,7 @@ class Run(Directory):
     def test_a_sound_run_says_nothing(self):
         quality, lines = self.verdict("particle_spacing_m=0.8")
         self.assertEqual(quality, {"verdict": "sound", "reasons": []})
-        self.assertEqual(lines[0], "x from the left boundary")
+        self.assertEqual(lines[0], "distances from x = 0 m to the right")
         self.assertEqual(self.stderr, "")
 
     def test_a_courant_number_beyond_stability_is_refused(self):
