@@ -80,7 +80,7 @@ std::string quality_line(const Json& quality) {
     const bool of_study = check == noise_check;
     if (of_study) append(verdicts, "study doubtful");
     append(why, of_study ? reason.at("example").get<std::string>()
-                         : std::to_string(reason.at("runs").get<std::int64_t>()) + " " + words_of_check(check));
+                         : words_of_check(check) + " (" + std::to_string(reason.at("runs").get<std::int64_t>()) + ")");
   }
   return why.empty() ? verdicts : verdicts + ": " + why;
 }

@@ -75,7 +75,7 @@ class Ours(ServiceTest):
         info = self.daemon.wait_for(job)
         counts = {"sound": 0, "doubtful": 4, "invalid": 0, "not_assessed": 0}
         self.assertEqual(info["quality"], counts)
-        self.assertIn("4 of 4 runs doubtful: 4 still moving", info["message"])
+        self.assertIn("4 of 4 runs doubtful: still moving (4)", info["message"])
         self.assertEqual(self.daemon.get(f"/jobs/{job}/histogram").json["quality"], counts)
         summary = self.daemon.get(f"/jobs/{job}/results").json["summary"]["value"]
         self.assertEqual(summary["quality"]["doubtful"], 4)

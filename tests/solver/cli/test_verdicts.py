@@ -106,7 +106,7 @@ class Study(Directory):
     def test_runs_that_end_too_early(self):
         done, summary, rows = self.study("time.end_s=1")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout.splitlines()[0], "4 of 4 runs doubtful: 4 still moving")
+        self.assertEqual(done.stdout.splitlines()[0], "4 of 4 runs doubtful: still moving (4)")
         self.assertEqual(summary["quality"]["doubtful"], 4)
         self.assertEqual([row["verdict"] for row in rows], ["doubtful"] * 4)
         self.assertTrue(rows[0]["verdict_reasons"].startswith("still_moving: "))

@@ -178,7 +178,7 @@ TEST(Charts, AllNameWhatMakesTheStudyDoubtful) {
   test::write_example_study(directory.path(), test::example_plan(20), records, {});
   const StudyFiles doubtful = read_study(directory.path());
   for (const Sheet& sheet : all_sheets(doubtful))
-    EXPECT_TRUE(contains(sheet.script.text(), "'1 of 20 runs doubtful: 1 left terrain' at screen"));
+    EXPECT_TRUE(contains(sheet.script.text(), "'1 of 20 runs doubtful: left terrain (1)' at screen"));
   for (const Sheet& sheet : all_sheets(sound)) EXPECT_FALSE(contains(sheet.script.text(), "doubtful"));
 }
 

@@ -53,7 +53,7 @@ TEST(QualitySummary, CountsVerdictsAndReasons) {
                          {{"check", "mach_number"}, {"runs", 1}, {"example", "0.7 times"}}};
   EXPECT_EQ(quality["reasons"], expected);
   EXPECT_EQ(quality_line(quality),
-            "2 of 5 runs doubtful, 1 invalid, 1 not assessed: 3 still moving, 1 left terrain, 1 mach number");
+            "2 of 5 runs doubtful, 1 invalid, 1 not assessed: still moving (3), left terrain (1), mach number (1)");
   static const test::SchemaCheck schema("study");
   EXPECT_EQ(schema.complaint(nlohmann::json(study)), "");
 }

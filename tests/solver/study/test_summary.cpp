@@ -146,7 +146,8 @@ TEST(Summary, RunOutsOfSoilThatLeftTheTerrainAreLowerBounds) {
     run.left_domain = k < 6 ? 0.0 : 3.0;
     runs.push_back(run);
   }
-  const Plan plan{.title = "cut off", .study = {.realizations = 10}};
+  Plan plan;
+  plan.study.realizations = 10;
   const Json q = summary_of(plan, runs, {}).json()["quantities"]["influence_zone_m"];
   EXPECT_EQ(q["censored"], (Json{{"runs", 4}, {"from", 31.0}}));
   EXPECT_EQ(q["mean_at_least"], true);
