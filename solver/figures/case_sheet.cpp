@@ -25,7 +25,7 @@ Box view_of(const Model& model, const Polyline& fitted) {
 }
 
 /// Plot elements of one figure, and their words in the key.
-struct Drawing {
+struct CaseDrawing {
   Sheet& sheet;
   std::vector<std::string> elements;
 
@@ -34,7 +34,7 @@ struct Drawing {
   }
 };
 
-void draw_rock(Drawing& d, const Polyline& fitted, const Box& view) {
+void draw_rock(CaseDrawing& d, const Polyline& fitted, const Box& view) {
   if (fitted.closed) return;
   std::vector<Vec2> rock = fitted.vertices;
   rock.insert(rock.end(), {{rock.back().x, view.lo.y}, {rock.front().x, view.lo.y}});
@@ -42,7 +42,7 @@ void draw_rock(Drawing& d, const Polyline& fitted, const Box& view) {
   d.add(std::string("$rock using 1:2 with filledcurves closed fillcolor rgb '") + ground + "'");
 }
 
-void draw_slide(Drawing& d, const Model& model) {
+void draw_slide(CaseDrawing& d, const Model& model) {
   std::vector<int> named;
   for (std::size_t k = 0; k < model.slide.size(); ++k) {
     const SlidePart& part = model.slide[k];
@@ -62,7 +62,7 @@ std::vector<Vec2> as_ring(const Polyline& line) {
   return vertices;
 }
 
-void draw_ground(Drawing& d, const Polyline& given, const Polyline& fitted, double metre) {
+void draw_ground(CaseDrawing& d, const Polyline& given, const Polyline& fitted, double metre) {
   std::vector<std::array<double, 4>> strokes;
   for (const Stroke& s : hatching(as_ring(fitted), 9 / metre, 8 / metre))
     strokes.push_back({s.from.x, s.from.y, s.along.x, s.along.y});
@@ -76,7 +76,7 @@ void draw_ground(Drawing& d, const Polyline& given, const Polyline& fitted, doub
   d.add(line("fitted", ink, changed ? 1.2 : 2.2), changed ? "ground as fitted to the spacing" : "ground");
 }
 
-void draw_walls(Drawing& d, const Model& model) {
+void draw_walls(CaseDrawing& d, const Model& model) {
   std::vector<Vec2> points;
   for (const WallPoint& w : plan_particles(model).walls) points.push_back(w.x);
   d.sheet.script.data("walls", points);
@@ -86,7 +86,7 @@ void draw_walls(Drawing& d, const Model& model) {
 }
 
 /// A ring around the end of a bed that has no wall.
-void mark_open_ends(Drawing& d, const Terrain& terrain) {
+void mark_open_ends(CaseDrawing& d, const Terrain& terrain) {
   std::vector<Vec2> open;
   if (!terrain.closed && !terrain.left_wall) open.push_back(terrain.bed.front());
   if (!terrain.closed && !terrain.right_wall) open.push_back(terrain.bed.back());
@@ -119,7 +119,7 @@ Sheet case_sheet(const LoadedCase& loaded, const GroundReport& report, const Sta
                1 - (panel.top - 0.5 * key_row) / layout.canvas.height,
                " left center horizontal Left reverse samplen 2 noautotitle font 'sans-serif,10' textcolor rgb '", ink,
                "'");
-  Drawing drawing{sheet, {}};
+  CaseDrawing drawing{sheet, {}};
   draw_rock(drawing, fitted, view);
   draw_slide(drawing, model);
   if (walls) draw_walls(drawing, model);
