@@ -88,6 +88,7 @@ struct ParticleCells {
 template <class T>
 void permute(std::vector<T>& values, std::span<const std::uint32_t> order, std::vector<double>& scratch) {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= sizeof(double));
+  if (order.empty()) return;
   scratch.resize(std::max(scratch.size(), order.size()));
   auto* bytes = reinterpret_cast<std::byte*>(scratch.data());
   for (std::size_t k = 0; k < order.size(); ++k) std::memcpy(bytes + k * sizeof(T), &values[order[k]], sizeof(T));
