@@ -119,7 +119,7 @@ class Study(Directory):
         self.assertEqual(done.returncode, 0, done.stderr)
         left = [row for row in rows if float(row["left_domain"]) > 0]
         self.assertTrue(left)
-        self.assertIn(f"{len(left)} left terrain", done.stdout.splitlines()[0])
+        self.assertIn(f"left terrain ({len(left)})", done.stdout.splitlines()[0])
         for row in rows:
             self.assertEqual("left_terrain: " in row["verdict_reasons"], row in left)
 
