@@ -19,6 +19,8 @@ constexpr Names<ShearRate> shear_rates[] = {{"consistent", ShearRate::consistent
 constexpr Names<Yield> yields[] = {{"elastic", Yield::elastic}, {"regularized", Yield::regularized}};
 constexpr Names<KernelShape> kernels[] = {{"cubic_spline", KernelShape::cubic_spline},
                                           {"wendland_c2", KernelShape::wendland_c2}};
+constexpr Names<VelocityJump> jumps[] = {{"reconstructed", VelocityJump::reconstructed},
+                                         {"whole", VelocityJump::whole}};
 constexpr Names<Continuity> continuities[] = {{"volume", Continuity::volume}, {"mass", Continuity::mass}};
 constexpr Names<DensityFilter> filters[] = {
     {"shepard", DensityFilter::shepard}, {"delta_sph", DensityFilter::delta_sph}, {"none", DensityFilter::none}};
@@ -115,6 +117,11 @@ void read_numerics(ObjectReader& in, Numerics& n) {
             {"Artificial viscosity, linear term.", "Monaghan 1992"});
   in.number("artificial_viscosity_beta", n.beta, {"", 0.0, 10.0},
             {"Artificial viscosity, quadratic term.", "Monaghan 1992"});
+  in.choice(
+      "artificial_viscosity_jump", n.velocity_jump, jumps,
+      {"What the artificial viscosity acts on: reconstructed: what of the approach of two particles their velocity "
+       "gradients do not explain, so that smooth shear is left alone; whole: all of it.",
+       "Frontiere et al. 2017; Monaghan 1992 for whole"});
   in.choice("continuity", n.continuity, continuities,
             {"volume: density rate rho_i sum V_j, exact across jumps of density; mass: sum m_j as printed.",
              "[Z20] Eq. 1 for mass"});

@@ -49,6 +49,11 @@ HWY_INLINE Vector<Real> operator*(Symmetric<Real> a, Vector<Real> v) {
 }
 
 template <class Real>
+HWY_INLINE Symmetric<Real> operator*(Real s, Symmetric<Real> a) {
+  return {s * a.xx, s * a.yy, s * a.xy};
+}
+
+template <class Real>
 HWY_INLINE Deviator<Real> operator+(Deviator<Real> a, Deviator<Real> b) {
   return {a.xx + b.xx, a.yy + b.yy, a.xy + b.xy};
 }
@@ -69,6 +74,11 @@ HWY_INLINE Real trace(Gradient<Real> L) {
 template <class Real>
 HWY_INLINE Real two_spin(Gradient<Real> L) {
   return L.xy - L.yx;
+}
+/// e = (L + L^T)/2                                                            [Z20] Eq. 9
+template <class Real>
+HWY_INLINE Symmetric<Real> strain_rate(Gradient<Real> L) {
+  return {L.xx, L.yy, Real(0.5) * (L.xy + L.yx)};
 }
 /// dev(e) = e - tr(e)/3 I with the 3D trace, e = (L + L^T)/2                 [Z20] Eqs. 8, 9
 /// L has the sign of v_j - v_i; the e of the printed Eq. 9 is minus the strain rate.

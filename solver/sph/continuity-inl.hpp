@@ -104,7 +104,7 @@ struct FlowRateSums {
 /// Pressure, stress, and the rates of density and elastic stress.                [Z20] Eqs. 1, 3-10
 /// @param tan_phi  of the soil, or of the wall that it slides along
 /// @param at       the point, or the points of a cluster: q(), c(), constant(get) of its ConstitutiveParameters;
-///                 elastic() as the model needs it; set_stress(s, p), set_rates(drho, gamma_dot);
+///                 elastic() as the model needs it; set_strain_rate(e), set_stress(s, p), set_rates(drho, gamma_dot);
 ///                 set_powers(f), which calls f(volume) for StressPowers where an evaluation measures them
 template <class Real, class Model, class Point>
 HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const FlowRates<Real>& rates, Real tan_phi,
@@ -113,6 +113,7 @@ HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const F
   const Real q = at.q();
   Real p = pressure(at.constant([](Parameters soil) { return soil.eos.B; }), q);
   if (k.numerics.tension_cutoff) p = apply_tension_cutoff(p);
+  at.set_strain_rate(strain_rate(rates.L));
   const Deviator<Real> e = deviatoric_strain_rate(rates.L);
   const PointState<Real> state{.e = e,
                                .two_spin = two_spin(rates.L),

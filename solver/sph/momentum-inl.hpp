@@ -38,13 +38,25 @@ struct ArtificialViscosity {
   }
 
   /// rho_i rho_j Pi_ij = (rho_i rho_j/rho_mean) mu (beta mu - alpha c_s)
-  HWY_INLINE Real operator()(Real of_i, Real rho_i, Real rho_j, Real v_dot_r, Real r2) const {
-    const Real approach = min(v_dot_r, Real(0.0)), soft_r2 = r2 + soft;
+  /// @param approach  v_ij.r_ij of an approaching pair, or what approach() makes of it; <= 0
+  HWY_INLINE Real operator()(Real of_i, Real rho_i, Real rho_j, Real approach, Real r2) const {
+    const Real soft_r2 = r2 + soft;
     const Real linear = of_i * approach * (rho_j / ((rho_i + rho_j) * soft_r2));
     if constexpr (!Quadratic) return linear;
     return linear * fma(beta, h * approach / soft_r2, alpha_c);
   }
 };
+
+/// What of v_ij.r_ij the artificial viscosity acts on.
+/// Monaghan's term sees the whole jump, so that it resists smooth shear as a viscosity of about alpha c_s h rho/8
+/// would, which falls with the spacing and decides how far a slide runs. With reconstruction it sees what the velocity
+/// gradients of the two particles do not explain, v_ij.r_ij - r_ij.(e_i + e_j)/2.r_ij (after Frontiere et al. 2017),
+/// bounded by zero and the whole jump: it never takes more than Monaghan's and never feeds energy.
+/// @param smooth  r_ij.(e_i + e_j)/2.r_ij, or 0
+template <class Real>
+HWY_INLINE Real approach(Real v_dot_r, Real smooth) {
+  return min(max(v_dot_r - smooth, v_dot_r), Real(0.0));
+}
 
 /// dv_i/dt = sum_j m_j ((sigma_i + sigma_j)/(rho_i rho_j) - Pi_ij I) . grad_i W_ij + g    [Z20] Eq. 2
 ///         = (1/rho_i) sum_j V_j (sigma_i + sigma_j - rho_i rho_j Pi_ij I) . F r_ij + g

@@ -59,7 +59,7 @@ void wall_stress_dispatch(PackedFlow& f, const FlowConstants& k, WallParticles& 
                      [&]<class Kernel>(std::type_identity<Kernel>) { wall_stress_loop<Kernel>(f, k, walls, batch); });
 }
 
-template <class Kernel, bool Quadratic, bool Measure>
+template <class Kernel, bool Quadratic, bool Reconstruct, bool Measure>
 HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range clusters) {
   const double quantum = f.fixed.quantum;
   const Kernel kernel(quantum / k.h);
@@ -76,6 +76,15 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
     load_groups(f.soil.motion.data() + 4 * i, x.x, x.y, v.x, v.y);
     load_groups(f.soil.density.data() + 4 * i, volume, q, rho, material);
     load_groups(f.soil.stress.data() + 4 * i, s.xx, s.yy, s.xy, p);
+    Symmetric<Lanes> half_e;
+    if constexpr (Reconstruct) {
+      Lanes unused;
+      load_groups(f.soil.strain.data() + 4 * i, half_e.xx, half_e.yy, half_e.xy, unused);
+    }
+    const auto approach_of = [&](Lanes v_dot_r, Vector<Lanes> r, Symmetric<Lanes> half_e_j) HWY_ATTR {
+      if constexpr (!Reconstruct) return min(v_dot_r, Lanes(0.0));
+      return approach(v_dot_r, dot((half_e + half_e_j) * r, r));
+    };
     const Lanes viscosity_of_i = viscosity.of_particle(rho);
     Vector<Lanes> sum{Lanes(0.0), Lanes(0.0)};
     auto powers = PairPowers<Lanes>::zero();
@@ -84,7 +93,8 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
       const float* HWY_RESTRICT density = f.soil.density.data() + 4 * pair.j;
       const Lanes VF = Lanes(density[0]) * pair.kernel;
       const Lanes v_dot_r = dot(v - Vector<Lanes>{Lanes(motion[2]), Lanes(motion[3])}, pair.r);
-      const Lanes Pi = viscosity(viscosity_of_i, rho, Lanes(density[2]), v_dot_r, pair.r2);
+      const Lanes approaching = approach_of(v_dot_r, pair.r, stress_of(f.soil.strain, pair.j));
+      const Lanes Pi = viscosity(viscosity_of_i, rho, Lanes(density[2]), approaching, pair.r2);
       sum = add_force(sum, s, stress_of(f.soil.stress, pair.j), Pi, VF, pair.r);
       if constexpr (Measure) powers.add_soil(Pi, VF, v_dot_r);
     };
@@ -92,7 +102,7 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
       const WallPair<Lanes> w = wall.pair(pair.r, v, wall_particle(f.walls, pair.j));
       Lanes VF = volume_w * pair.kernel;
       if (wall.only_approaching) VF = select_or_zero(w.v_dot_r < Lanes(0.0), VF);
-      const Lanes Pi = viscosity(viscosity_of_i, rho, rho, w.v_dot_r, pair.r2);
+      const Lanes Pi = viscosity(viscosity_of_i, rho, rho, approach_of(w.v_dot_r, pair.r, half_e), pair.r2);
       const Symmetric<Lanes> s_w = stress_of(f.walls.stress, pair.j);
       sum = add_force(sum, s, s_w, Pi, VF, pair.r);
       if constexpr (Measure) powers.add_wall(s, s_w, Pi, VF, v, w.v_ij, pair.r);
@@ -112,16 +122,21 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
 
 void momentum_dispatch(PackedFlow& f, const FlowConstants& k, bool measure, Range clusters) {
   with_kernel<Lanes>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
-    const auto run = [&]<bool Quadratic>() {
+    const auto run = [&]<bool Quadratic, bool Reconstruct>() {
       if (measure)
-        momentum_loop<Kernel, Quadratic, true>(f, k, clusters);
+        momentum_loop<Kernel, Quadratic, Reconstruct, true>(f, k, clusters);
       else
-        momentum_loop<Kernel, Quadratic, false>(f, k, clusters);
+        momentum_loop<Kernel, Quadratic, Reconstruct, false>(f, k, clusters);
     };
-    if (k.numerics.beta > 0.0)
-      run.template operator()<true>();
+    const bool quadratic = k.numerics.beta > 0.0, reconstruct = k.numerics.velocity_jump == VelocityJump::reconstructed;
+    if (quadratic && reconstruct)
+      run.template operator()<true, true>();
+    else if (quadratic)
+      run.template operator()<true, false>();
+    else if (reconstruct)
+      run.template operator()<false, true>();
     else
-      run.template operator()<false>();
+      run.template operator()<false, false>();
   });
 }
 

@@ -39,6 +39,7 @@ struct SoilPoint {
   Soil& soil;
   ParticlePowers<double>* powers;
   std::size_t i;
+  Symmetric<double>* strain = nullptr;  ///< the strain rate goes there
 
   const ConstitutiveParameters& parameters(std::size_t j) const {
     return k.soils[static_cast<std::size_t>(soil.material[j])];
@@ -52,6 +53,7 @@ struct SoilPoint {
     return get(parameters(i));
   }
   const SoilPoint& elastic() const { return *this; }
+  void set_strain_rate(Symmetric<double> e) const { *strain = e; }
   void set_stress(Symmetric<double> s, double p) const {
     soil.sxx[i] = s.xx;
     soil.syy[i] = s.yy;
@@ -95,6 +97,7 @@ struct Passes {
   Kernel kernel{1.0 / k.h};
   double sigma = sigma_h2<Kernel>(k.h), support2 = 4.0 * k.h * k.h;
   WallLaw<double> wall_law{k, 1.0};
+  std::vector<Symmetric<double>> strain{};  ///< rates, of all particles [1/s]
 
   double minus_F(double r2) const { return kernel.minus_F(std::sqrt(r2), r2); }
   Symmetric<double> stress(std::size_t i) const { return {soil.sxx[i], soil.syy[i], soil.sxy[i]}; }
@@ -109,7 +112,7 @@ struct Passes {
   double volume(std::size_t j) const { return SoilPoint{k, soil, nullptr, j}.volume(); }
 
   template <class Model>
-  void update_stress(std::size_t i) const {
+  void update_stress(std::size_t i) {
     const double c2 = k.c_s * k.c_s, rho_i = density(i);
     const bool by_mass = k.numerics.continuity == Continuity::mass,
                diffuse = k.numerics.density_filter == DensityFilter::delta_sph;
@@ -132,7 +135,7 @@ struct Passes {
     });
     const double to_diffusion = 2.0 * k.numerics.delta * k.h * k.c_s * sigma;
     update_point(k, Model(k.rheology), sums.rates(-sigma, to_diffusion, by_mass, rho_i), tan_phi,
-                 SoilPoint{k, soil, powers, i});
+                 SoilPoint{k, soil, powers, i, &strain[i]});
   }
 
   void update_wall_stress(std::size_t w) const {
@@ -156,12 +159,16 @@ struct Passes {
     const ArtificialViscosity<double, Quadratic> viscosity(k, 1.0);
     const Vector<double> v_i = vector(soil.velocity(i));
     const double rho_i = density(i), viscosity_of_i = viscosity.of_particle(rho_i);
-    const Symmetric<double> s_i = stress(i);
+    const Symmetric<double> s_i = stress(i), e_i = strain[i];
+    const bool reconstruct = k.numerics.velocity_jump == VelocityJump::reconstructed;
+    const auto approach_of = [&](double v_dot_r, Vector<double> r, const Symmetric<double>& e_j) {
+      return approach(v_dot_r, reconstruct ? 0.5 * dot((e_i + e_j) * r, r) : 0.0);
+    };
     Vector<double> sum{0.0, 0.0};
     auto pair_powers = PairPowers<double>::zero();
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double v_dot_r = dot(v_i - vector(soil.velocity(j)), r);
-      const double Pi = viscosity(viscosity_of_i, rho_i, density(j), v_dot_r, r2);
+      const double Pi = viscosity(viscosity_of_i, rho_i, density(j), approach_of(v_dot_r, r, strain[j]), r2);
       const double VF = volume(j) * minus_F(r2);
       sum = add_force(sum, s_i, stress(j), Pi, VF, r);
       if (powers) pair_powers.add_soil(Pi, VF, v_dot_r);
@@ -169,7 +176,7 @@ struct Passes {
     for_neighbours(cells.walls, walls, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const WallPair<double> w = wall_law.pair(r, v_i, wall_particle(j));
       if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
-      const double Pi = viscosity(viscosity_of_i, rho_i, rho_i, w.v_dot_r, r2);
+      const double Pi = viscosity(viscosity_of_i, rho_i, rho_i, approach_of(w.v_dot_r, r, e_i), r2);
       const Symmetric<double> s_w{walls.sxx[j], walls.syy[j], walls.sxy[j]};
       const double VF = walls.volume * minus_F(r2);
       sum = add_force(sum, s_i, s_w, Pi, VF, r);
@@ -185,7 +192,8 @@ struct Passes {
   }
 
   template <class Model>
-  void evaluate() const {
+  void evaluate() {
+    strain.resize(soil.n_active);
 #pragma omp parallel
     {
 #pragma omp for schedule(static, grain)
