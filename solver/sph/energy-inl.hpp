@@ -57,10 +57,11 @@ struct PairPowers {
     soil_viscosity = fma(VF * rho_rho_Pi, v_dot_r, soil_viscosity);
   }
   /// V_w F (v_w.sigma_i.r_iw + v_i.sigma_w.r_iw), v_w = v_i - v_iw the virtual velocity of the wall particle, and
-  /// V_w rho_i rho_i Pi_iw F v_i.r_iw: a wall stands still and does not share the loss.
+  /// V_w rho_i rho_i Pi_iw F v_i.arm: a wall stands still and does not share the loss.
+  /// @param arm  r_iw, or the part of it that the artificial viscosity acts along
   HWY_INLINE void add_wall(Symmetric<Real> s_i, Symmetric<Real> s_w, Real rho_rho_Pi, Real VF, Vector<Real> v_i,
-                           Vector<Real> v_iw, Vector<Real> r_iw) {
-    wall_viscosity = fma(VF * rho_rho_Pi, dot(v_i, r_iw), wall_viscosity);
+                           Vector<Real> v_iw, Vector<Real> r_iw, Vector<Real> arm) {
+    wall_viscosity = fma(VF * rho_rho_Pi, dot(v_i, arm), wall_viscosity);
     boundaries = fma(VF, dot(v_i - v_iw, s_i * r_iw) + dot(v_i, s_w * r_iw), boundaries);
   }
 

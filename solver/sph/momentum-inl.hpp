@@ -38,7 +38,7 @@ struct ArtificialViscosity {
   }
 
   /// rho_i rho_j Pi_ij = (rho_i rho_j/rho_mean) mu (beta mu - alpha c_s)
-  /// @param approach  v_ij.r_ij of an approaching pair, or what approach() makes of it; <= 0
+  /// @param approach  v_ij.r_ij of an approaching pair or what reconstruction leaves of it, <= 0
   HWY_INLINE Real operator()(Real of_i, Real rho_i, Real rho_j, Real approach, Real r2) const {
     const Real soft_r2 = r2 + soft;
     const Real linear = of_i * approach * (rho_j / ((rho_i + rho_j) * soft_r2));
@@ -47,15 +47,23 @@ struct ArtificialViscosity {
   }
 };
 
-/// What of v_ij.r_ij the artificial viscosity acts on.
-/// Monaghan's term sees the whole jump, so that it resists smooth shear as a viscosity of about alpha c_s h rho/8
-/// would, which falls with the spacing and decides how far a slide runs. With reconstruction it sees what the velocity
-/// gradients of the two particles do not explain, v_ij.r_ij - r_ij.(e_i + e_j)/2.r_ij (after Frontiere et al. 2017),
-/// bounded by zero and the whole jump: it never takes more than Monaghan's and never feeds energy.
-/// @param smooth  r_ij.(e_i + e_j)/2.r_ij, or 0
+/// What the artificial viscosity of two soil particles acts on, if their velocities are reconstructed: of v_ij.r_ij
+/// that part which their strain rates do not explain, v_ij.r_ij - r_ij.(e_i + e_j)/2.r_ij (after Frontiere et al.
+/// 2017). Monaghan's term acts on the whole v_ij.r_ij, so that it resists smooth shear as a viscosity of about rho
+/// alpha c_s h/8 would, which falls with the spacing and decides how far a slide runs. Bounded by the whole and zero:
+/// it never takes more than Monaghan's term and never feeds energy.
+/// @param smooth  r_ij.(e_i + e_j)/2.r_ij
 template <class Real>
-HWY_INLINE Real approach(Real v_dot_r, Real smooth) {
+HWY_INLINE Real unexplained_approach(Real v_dot_r, Real smooth) {
   return min(max(v_dot_r - smooth, v_dot_r), Real(0.0));
+}
+
+/// The part of r_ij across the wall. With reconstruction the artificial viscosity between soil and wall acts on the
+/// velocity across the wall alone, and across it: soil that slides along a wall is slowed by friction, not by numerics.
+/// @param n  unit normal of the wall
+template <class Real>
+HWY_INLINE Vector<Real> across_wall(Vector<Real> r_ij, Vector<Real> n) {
+  return dot(r_ij, n) * n;
 }
 
 /// dv_i/dt = sum_j m_j ((sigma_i + sigma_j)/(rho_i rho_j) - Pi_ij I) . grad_i W_ij + g    [Z20] Eq. 2
@@ -68,6 +76,12 @@ HWY_INLINE Vector<Real> add_force(Vector<Real> sum, Symmetric<Real> s_i, Symmetr
   const Symmetric<Real> s = s_i + s_j;
   const Symmetric<Real> with_viscosity{s.xx - rho_rho_Pi, s.yy - rho_rho_Pi, s.xy};
   return fma(VF, with_viscosity * r_ij, sum);
+}
+/// The same where the artificial viscosity acts along `arm`, a part of r_ij.
+template <class Real>
+HWY_INLINE Vector<Real> add_force(Vector<Real> sum, Symmetric<Real> s_i, Symmetric<Real> s_j, Real rho_rho_Pi, Real VF,
+                                  Vector<Real> r_ij, Vector<Real> arm) {
+  return fma(VF, (s_i + s_j) * r_ij - rho_rho_Pi * arm, sum);
 }
 
 }  // namespace talus::HWY_NAMESPACE

@@ -35,7 +35,7 @@ HWY_ATTR void wall_stress_loop(PackedFlow& f, const FlowConstants& k, WallPartic
     auto sum = WallStressSum<Lanes>::zero();
     for_neighbours<false>(x, f.soil.motion.data(), neighbours(f.wall_soil, c), W, [&](const Pair& pair) HWY_ATTR {
       const Lanes p(f.soil.stress[4 * pair.j + 3]), rho(f.soil.density[4 * pair.j + 2]), q(f.soil.q[pair.j]);
-      sum.add(pair.kernel, {stress_of(f.soil.stress, pair.j), p, rho, q}, dot(g, pair.r), per_c2);
+      sum.add(pair.kernel, {tensor_of(f.soil.stress, pair.j), p, rho, q}, dot(g, pair.r), per_c2);
     });
     const Lanes slip = load(f.walls.slip.data() + i);
     const WallStress<Lanes> wall =
@@ -59,6 +59,15 @@ void wall_stress_dispatch(PackedFlow& f, const FlowConstants& k, WallParticles& 
                      [&]<class Kernel>(std::type_identity<Kernel>) { wall_stress_loop<Kernel>(f, k, walls, batch); });
 }
 
+/// Of a cluster that begins at place i.
+HWY_INLINE Symmetric<Lanes> half_strain_rate(const PackedSoil& soil, std::size_t i) {
+  Symmetric<Lanes> half_e;
+  Lanes unused;
+  load_groups(soil.strain.data() + 4 * i, half_e.xx, half_e.yy, half_e.xy, unused);
+  return half_e;
+}
+
+/// `Reconstruct`: VelocityJump::reconstructed.
 template <class Kernel, bool Quadratic, bool Reconstruct, bool Measure>
 HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range clusters) {
   const double quantum = f.fixed.quantum;
@@ -76,15 +85,7 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
     load_groups(f.soil.motion.data() + 4 * i, x.x, x.y, v.x, v.y);
     load_groups(f.soil.density.data() + 4 * i, volume, q, rho, material);
     load_groups(f.soil.stress.data() + 4 * i, s.xx, s.yy, s.xy, p);
-    Symmetric<Lanes> half_e;
-    if constexpr (Reconstruct) {
-      Lanes unused;
-      load_groups(f.soil.strain.data() + 4 * i, half_e.xx, half_e.yy, half_e.xy, unused);
-    }
-    const auto approach_of = [&](Lanes v_dot_r, Vector<Lanes> r, Symmetric<Lanes> half_e_j) HWY_ATTR {
-      if constexpr (!Reconstruct) return min(v_dot_r, Lanes(0.0));
-      return approach(v_dot_r, dot((half_e + half_e_j) * r, r));
-    };
+    const Symmetric<Lanes> half_e = Reconstruct ? half_strain_rate(f.soil, i) : Symmetric<Lanes>{};
     const Lanes viscosity_of_i = viscosity.of_particle(rho);
     Vector<Lanes> sum{Lanes(0.0), Lanes(0.0)};
     auto powers = PairPowers<Lanes>::zero();
@@ -93,19 +94,24 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
       const float* HWY_RESTRICT density = f.soil.density.data() + 4 * pair.j;
       const Lanes VF = Lanes(density[0]) * pair.kernel;
       const Lanes v_dot_r = dot(v - Vector<Lanes>{Lanes(motion[2]), Lanes(motion[3])}, pair.r);
-      const Lanes approaching = approach_of(v_dot_r, pair.r, stress_of(f.soil.strain, pair.j));
-      const Lanes Pi = viscosity(viscosity_of_i, rho, Lanes(density[2]), approaching, pair.r2);
-      sum = add_force(sum, s, stress_of(f.soil.stress, pair.j), Pi, VF, pair.r);
+      Lanes approach = min(v_dot_r, Lanes(0.0));
+      if constexpr (Reconstruct)
+        approach = unexplained_approach(v_dot_r, dot((half_e + tensor_of(f.soil.strain, pair.j)) * pair.r, pair.r));
+      const Lanes Pi = viscosity(viscosity_of_i, rho, Lanes(density[2]), approach, pair.r2);
+      sum = add_force(sum, s, tensor_of(f.soil.stress, pair.j), Pi, VF, pair.r);
       if constexpr (Measure) powers.add_soil(Pi, VF, v_dot_r);
     };
     const auto add_wall = [&](const Pair& pair) HWY_ATTR {
-      const WallPair<Lanes> w = wall.pair(pair.r, v, wall_particle(f.walls, pair.j));
+      const WallParticle<Lanes> wall_j = wall_particle(f.walls, pair.j);
+      const WallPair<Lanes> w = wall.pair(pair.r, v, wall_j);
       Lanes VF = volume_w * pair.kernel;
       if (wall.only_approaching) VF = select_or_zero(w.v_dot_r < Lanes(0.0), VF);
-      const Lanes Pi = viscosity(viscosity_of_i, rho, rho, approach_of(w.v_dot_r, pair.r, half_e), pair.r2);
-      const Symmetric<Lanes> s_w = stress_of(f.walls.stress, pair.j);
-      sum = add_force(sum, s, s_w, Pi, VF, pair.r);
-      if constexpr (Measure) powers.add_wall(s, s_w, Pi, VF, v, w.v_ij, pair.r);
+      const Vector<Lanes> arm = Reconstruct ? across_wall(pair.r, wall_j.normal) : pair.r;
+      const Lanes approach = min(Reconstruct ? dot(w.v_ij, arm) : w.v_dot_r, Lanes(0.0));
+      const Lanes Pi = viscosity(viscosity_of_i, rho, rho, approach, pair.r2);
+      const Symmetric<Lanes> s_w = tensor_of(f.walls.stress, pair.j);
+      sum = Reconstruct ? add_force(sum, s, s_w, Pi, VF, pair.r, arm) : add_force(sum, s, s_w, Pi, VF, pair.r);
+      if constexpr (Measure) powers.add_wall(s, s_w, Pi, VF, v, w.v_ij, pair.r, arm);
     };
     for_neighbours<true>(x, f.soil.motion.data(), neighbours(f.soil_soil, c), minus_F, add_soil);
     for_neighbours<false>(x, f.walls.place.data(), neighbours(f.soil_wall, c), minus_F, add_wall);

@@ -90,10 +90,10 @@ HWY_INLINE WallParticle<Lanes> wall_particle(const PackedWalls& walls, std::size
           Lanes(walls.stress[4 * j + 3]),
           std::bit_cast<std::int32_t>(walls.slip[j]) == std::bit_cast<std::int32_t>(slip_code(WallSlip::free_slip))};
 }
-/// The stress of a group of four (sxx, syy, sxy, ...).
-HWY_INLINE Symmetric<Lanes> stress_of(const std::vector<float>& groups, std::size_t j) {
-  const float* HWY_RESTRICT stress = groups.data() + 4 * j;
-  return {Lanes(stress[0]), Lanes(stress[1]), Lanes(stress[2])};
+/// The stress or strain rate of a group of four (xx, yy, xy, ...).
+HWY_INLINE Symmetric<Lanes> tensor_of(const std::vector<float>& groups, std::size_t j) {
+  const float* HWY_RESTRICT tensor = groups.data() + 4 * j;
+  return {Lanes(tensor[0]), Lanes(tensor[1]), Lanes(tensor[2])};
 }
 
 }  // namespace talus::HWY_NAMESPACE

@@ -161,26 +161,27 @@ struct Passes {
     const double rho_i = density(i), viscosity_of_i = viscosity.of_particle(rho_i);
     const Symmetric<double> s_i = stress(i), e_i = strain[i];
     const bool reconstruct = k.numerics.velocity_jump == VelocityJump::reconstructed;
-    const auto approach_of = [&](double v_dot_r, Vector<double> r, const Symmetric<double>& e_j) {
-      return approach(v_dot_r, reconstruct ? 0.5 * dot((e_i + e_j) * r, r) : 0.0);
-    };
     Vector<double> sum{0.0, 0.0};
     auto pair_powers = PairPowers<double>::zero();
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double v_dot_r = dot(v_i - vector(soil.velocity(j)), r);
-      const double Pi = viscosity(viscosity_of_i, rho_i, density(j), approach_of(v_dot_r, r, strain[j]), r2);
+      const double approach =
+          reconstruct ? unexplained_approach(v_dot_r, 0.5 * dot((e_i + strain[j]) * r, r)) : std::min(v_dot_r, 0.0);
+      const double Pi = viscosity(viscosity_of_i, rho_i, density(j), approach, r2);
       const double VF = volume(j) * minus_F(r2);
       sum = add_force(sum, s_i, stress(j), Pi, VF, r);
       if (powers) pair_powers.add_soil(Pi, VF, v_dot_r);
     });
     for_neighbours(cells.walls, walls, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
-      const WallPair<double> w = wall_law.pair(r, v_i, wall_particle(j));
+      const WallParticle<double> wall_j = wall_particle(j);
+      const WallPair<double> w = wall_law.pair(r, v_i, wall_j);
       if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
-      const double Pi = viscosity(viscosity_of_i, rho_i, rho_i, approach_of(w.v_dot_r, r, e_i), r2);
+      const Vector<double> arm = reconstruct ? across_wall(r, wall_j.normal) : r;
+      const double Pi = viscosity(viscosity_of_i, rho_i, rho_i, std::min(dot(w.v_ij, arm), 0.0), r2);
       const Symmetric<double> s_w{walls.sxx[j], walls.syy[j], walls.sxy[j]};
       const double VF = walls.volume * minus_F(r2);
-      sum = add_force(sum, s_i, s_w, Pi, VF, r);
-      if (powers) pair_powers.add_wall(s_i, s_w, Pi, VF, v_i, w.v_ij, r);
+      sum = reconstruct ? add_force(sum, s_i, s_w, Pi, VF, r, arm) : add_force(sum, s_i, s_w, Pi, VF, r);
+      if (powers) pair_powers.add_wall(s_i, s_w, Pi, VF, v_i, w.v_ij, r, arm);
     });
     const Vector<double> a = fma(-sigma / rho_i, sum, vector(k.g));
     soil.ax[i] = a.x;

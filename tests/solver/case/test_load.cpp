@@ -88,6 +88,7 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
                           {"sound_speed_m_s", 8},
                           {"artificial_viscosity_alpha", 9},
                           {"artificial_viscosity_beta", 10},
+                          {"artificial_viscosity_jump", "reconstructed"},
                           {"continuity", "mass"},
                           {"density_filter", "delta_sph"},
                           {"filter_interval_steps", 11},
@@ -103,9 +104,9 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
   EXPECT_EQ(m.materials[0], (Material{"m", 1, 2 * std::numbers::pi / 180, 3, 4}));
   EXPECT_EQ(m.g, (Vec2{0, -5}));
   EXPECT_EQ(m.rheology, (Rheology{ShearRate::paper, Yield::regularized, 6, 7.0}));
-  EXPECT_EQ(m.numerics,
-            (Numerics{KernelShape::wendland_c2, 1.25, 8.0, 9, 10, Continuity::mass, DensityFilter::delta_sph, 11, 0.12,
-                      false, InitialPressure::stress_free, Integrator::leapfrog, Precision::full, 0.13}));
+  EXPECT_EQ(m.numerics, (Numerics{KernelShape::wendland_c2, 1.25, 8.0, 9, VelocityJump::reconstructed, 10,
+                                  Continuity::mass, DensityFilter::delta_sph, 11, 0.12, false,
+                                  InitialPressure::stress_free, Integrator::leapfrog, Precision::full, 0.13}));
   EXPECT_EQ(m.walls, (Walls{WallContact::approaching, 14, 15}));
   EXPECT_EQ(m.boundaries.at(0).slip, WallSlip::free_slip);
   EXPECT_EQ(m.time, (TimeControl{16, {}, 17.0, {}, StopAtRest{18, 19}}));

@@ -73,28 +73,30 @@ TEST(Powers, TheBalanceClosesForAnyPositionsAndEveryOption) {
         for (const auto filter : {DensityFilter::delta_sph, DensityFilter::none})
           for (const auto yield : {Yield::elastic, Yield::regularized})
             for (const auto kernel : {KernelShape::cubic_spline, KernelShape::wendland_c2})
-              for (const bool cut : {true, false}) {
-                FlowConstants k = varied_constants();
-                k.boundaries = {{slip, slip == WallSlip::friction ? 0.1 : 1e9}};
-                k.walls.contact = contact;
-                k.numerics.continuity = continuity;
-                k.numerics.density_filter = filter;
-                k.numerics.kernel = kernel;
-                k.numerics.tension_cutoff = cut;
-                k.rheology.yield = yield;
-                Soil soil = random_soil(20, 8, k.dx, 47, 2);
-                if (cut) soil.rho[50] = 300;  // so loose that its volume is bounded
-                const Balance b = Evaluated(k, std::move(soil), sloping_walls(20, k.dx)).balance(k);
-                EXPECT_NEAR(b.kinetic + b.compression - b.gravity + b.taken(), 0.0, 1e-12 * b.scale);
-                for (const double term : {b.powers.deviator, b.powers.viscosity, b.powers.artificial_viscosity,
-                                          b.powers.boundaries, b.compression})
-                  EXPECT_GT(std::abs(term), 1e-5 * b.scale) << "each term has its weight";
-                if (filter == DensityFilter::delta_sph || continuity == Continuity::mass) {
-                  EXPECT_GT(std::abs(b.powers.density_diffusion), 1e-5 * b.scale);
-                } else {
-                  EXPECT_EQ(b.powers.density_diffusion, 0.0);
+              for (const bool cut : {true, false})
+                for (const auto jump : {VelocityJump::reconstructed, VelocityJump::whole}) {
+                  FlowConstants k = varied_constants();
+                  k.numerics.velocity_jump = jump;
+                  k.boundaries = {{slip, slip == WallSlip::friction ? 0.1 : 1e9}};
+                  k.walls.contact = contact;
+                  k.numerics.continuity = continuity;
+                  k.numerics.density_filter = filter;
+                  k.numerics.kernel = kernel;
+                  k.numerics.tension_cutoff = cut;
+                  k.rheology.yield = yield;
+                  Soil soil = random_soil(20, 8, k.dx, 47, 2);
+                  if (cut) soil.rho[50] = 300;  // so loose that its volume is bounded
+                  const Balance b = Evaluated(k, std::move(soil), sloping_walls(20, k.dx)).balance(k);
+                  EXPECT_NEAR(b.kinetic + b.compression - b.gravity + b.taken(), 0.0, 1e-12 * b.scale);
+                  for (const double term : {b.powers.deviator, b.powers.viscosity, b.powers.artificial_viscosity,
+                                            b.powers.boundaries, b.compression})
+                    EXPECT_GT(std::abs(term), 1e-5 * b.scale) << "each term has its weight";
+                  if (filter == DensityFilter::delta_sph || continuity == Continuity::mass) {
+                    EXPECT_GT(std::abs(b.powers.density_diffusion), 1e-5 * b.scale);
+                  } else {
+                    EXPECT_EQ(b.powers.density_diffusion, 0.0);
+                  }
                 }
-              }
 }
 
 TEST(Powers, ViscosityAndFrictionOfTheRegularisedLaw) {
@@ -151,6 +153,61 @@ TEST(Powers, ArtificialViscosityOfTwoParticlesThatApproach) {
   const double F = -7 / (4 * std::numbers::pi * std::pow(k.h, 4)) * 5 * std::pow(0.5, 3);  // at r = h
   EXPECT_NEAR(b.powers.artificial_viscosity, 18 * 18 * Pi * F * -approach * k.h, 1e-10 * b.scale);
   EXPECT_GT(b.powers.artificial_viscosity, 0.0);
+}
+
+/// Power of the artificial viscosity on a lattice whose velocity is linear in the position, and noise.
+double artificial_power(VelocityJump jump, Gradient<double> L, double noise) {
+  FlowConstants k = constants(0.1, {0, 0});
+  k.numerics.kernel = KernelShape::wendland_c2;
+  k.numerics.velocity_jump = jump;
+  k.h = 1.5 * k.dx;
+  Soil soil = random_soil(16, 16, k.dx, 3);
+  for (std::size_t i = 0; i < soil.size(); ++i) {
+    const double column = std::round(soil.x[i] / k.dx), row = std::round(soil.y[i] / k.dx);
+    soil.x[i] = column * k.dx;
+    soil.y[i] = row * k.dx;
+    soil.m[i] = soil.rho[i] * k.dx * k.dx;
+    soil.vx[i] = L.xx * soil.x[i] + L.xy * soil.y[i] + noise * soil.vx[i];
+    soil.vy[i] = L.yx * soil.x[i] + L.yy * soil.y[i] + noise * soil.vy[i];
+  }
+  const Evaluated at(k, std::move(soil), {});
+  double inside = 0.0;  // away from the rim, where the velocity gradient lacks neighbours
+  for (std::size_t i = 0; i < at.soil.size(); ++i)
+    if (std::abs(at.soil.x[i] - 0.75) < 0.3 && std::abs(at.soil.y[i] - 0.75) < 0.3)
+      inside += at.powers.artificial_viscosity[i];
+  return inside;
+}
+
+TEST(Powers, ReconstructionLeavesSmoothDeformationAloneAndDampsNoise) {
+  using enum VelocityJump;
+  for (const Gradient<double> L : {Gradient<double>{0, 3, 0, 0}, {0, 0, -2, 0}, {-1, 0, 0, 1}, {-2, 1, 0.5, -1}}) {
+    const double monaghan = artificial_power(whole, L, 0.0), left = artificial_power(reconstructed, L, 0.0);
+    EXPECT_GT(monaghan, 0.0);
+    EXPECT_GE(left, 0.0);
+    EXPECT_LT(left, 0.02 * monaghan) << "but for the error of the velocity gradient on a lattice";
+  }
+  const double noise = artificial_power(whole, {0, 0, 0, 0}, 1.0);
+  EXPECT_GT(artificial_power(reconstructed, {0, 0, 0, 0}, 1.0), 0.5 * noise);
+  EXPECT_LT(artificial_power(reconstructed, {0, 0, 0, 0}, 1.0), noise);
+}
+
+TEST(Powers, OnlyTheVelocityAcrossAWallIsDampedWithReconstruction) {
+  FlowConstants k = constants(0.1, {0, 0});
+  const auto power = [&](VelocityJump jump, Vec2 v) {
+    k.numerics.velocity_jump = jump;
+    Soil one = random_soil(1, 1, k.dx, 1);
+    one.x = {0.0};
+    one.y = {0.0};
+    one.vx = {v.x};
+    one.vy = {v.y};
+    return Evaluated(k, std::move(one), flat_walls(1, k.dx)).powers.artificial_viscosity[0];
+  };
+  EXPECT_GT(power(VelocityJump::whole, {1, 0}), 0.0);
+  EXPECT_EQ(power(VelocityJump::reconstructed, {1, 0}), 0.0) << "along";
+  EXPECT_EQ(power(VelocityJump::reconstructed, {0, 1}), 0.0) << "away";
+  const double across = power(VelocityJump::reconstructed, {0, -1});
+  EXPECT_NEAR(across, power(VelocityJump::whole, {0, -1}), 0.5 * across);
+  EXPECT_NEAR(power(VelocityJump::reconstructed, {7, -1}), across, 1e-12 * across) << "whatever the speed along";
 }
 
 TEST(Powers, DiffusionBetweenTwoDensitiesAtRest) {

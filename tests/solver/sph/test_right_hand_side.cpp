@@ -58,6 +58,7 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     const bool approaches = vx * x + vy * y < 0;
     return WallPair{d_i, vx, vy, std::hypot(x, y) < 2 * k.h && (k.walls.contact == WallContact::always || approaches)};
   };
+  std::vector<double> e_xx(n), e_yy(n), e_xy(n);
   for (std::size_t i = 0; i < n; ++i) {
     const ConstitutiveParameters& law = k.soils[static_cast<std::size_t>(s.material[i])];
     double Lxx = 0, Lxy = 0, Lyx = 0, Lyy = 0, mass_form = 0, diffusion = 0;
@@ -89,6 +90,9 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       Lyy -= w.volume * pair.vy * gy;
       mass_form += s.rho[i] * w.volume * (pair.vx * gx + pair.vy * gy);
     }
+    e_xx[i] = Lxx;
+    e_yy[i] = Lyy;
+    e_xy[i] = (Lxy + Lyx) / 2;
     r.drho[i] = k.numerics.continuity == Continuity::mass ? mass_form : -s.rho[i] * (Lxx + Lyy);
     if (k.numerics.density_filter == DensityFilter::delta_sph)
       r.drho[i] += 2 * k.numerics.delta * k.h * k.c_s * diffusion;
@@ -156,8 +160,8 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
   for (std::size_t i = 0; i < n; ++i) {
     r.ax[i] = k.g.x;
     r.ay[i] = k.g.y;
-    const auto viscous = [&](double v_x, double v_y, double x, double y, double rho) {
-      const double vr = v_x * x + v_y * y;
+    const bool reconstruct = k.numerics.velocity_jump == VelocityJump::reconstructed;
+    const auto viscous = [&](double vr, double x, double y, double rho) {
       if (vr >= 0) return 0.0;
       const double mu = k.h * vr / (x * x + y * y + 0.01 * k.h * k.h);
       return (-k.numerics.alpha * k.c_s * mu + k.numerics.beta * mu * mu) / rho;
@@ -166,8 +170,11 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       if (i == j) continue;
       const double x = s.x[i] - s.x[j], y = s.y[i] - s.y[j], d = std::hypot(x, y), gx = dW(d) * x / d,
                    gy = dW(d) * y / d;
-      const double Pi = viscous(s.vx[i] - s.vx[j], s.vy[i] - s.vy[j], x, y, (s.rho[i] + s.rho[j]) / 2),
-                   rr = s.rho[i] * s.rho[j];
+      double vr = (s.vx[i] - s.vx[j]) * x + (s.vy[i] - s.vy[j]) * y;
+      if (reconstruct && vr < 0)
+        vr = std::max(
+            vr, vr - ((e_xx[i] + e_xx[j]) * x * x + (e_yy[i] + e_yy[j]) * y * y) / 2 - (e_xy[i] + e_xy[j]) * x * y);
+      const double Pi = viscous(vr, x, y, (s.rho[i] + s.rho[j]) / 2), rr = s.rho[i] * s.rho[j];
       r.ax[i] += s.m[j] * (((r.sxx[i] + r.sxx[j]) / rr - Pi) * gx + (r.sxy[i] + r.sxy[j]) / rr * gy);
       r.ay[i] += s.m[j] * ((r.sxy[i] + r.sxy[j]) / rr * gx + ((r.syy[i] + r.syy[j]) / rr - Pi) * gy);
     }
@@ -176,9 +183,15 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       const WallPair pair = wall_pair(i, j);
       if (!pair.acts) continue;
       const double gx = dW(d) * x / d, gy = dW(d) * y / d, rho = s.rho[i], V = w.volume / rho;
-      const double Pi = viscous(pair.vx, pair.vy, x, y, rho);
-      r.ax[i] += V * ((r.sxx[i] + r.wall_sxx[j] - rho * rho * Pi) * gx + (r.sxy[i] + r.wall_sxy[j]) * gy);
-      r.ay[i] += V * ((r.sxy[i] + r.wall_sxy[j]) * gx + (r.syy[i] + r.wall_syy[j] - rho * rho * Pi) * gy);
+      double arm_x = x, arm_y = y;
+      if (reconstruct) {
+        const double height = x * w.nx[j] + y * w.ny[j];
+        arm_x = height * w.nx[j];
+        arm_y = height * w.ny[j];
+      }
+      const double Pi = viscous(pair.vx * arm_x + pair.vy * arm_y, x, y, rho), viscosity = rho * rho * Pi * dW(d) / d;
+      r.ax[i] += V * ((r.sxx[i] + r.wall_sxx[j]) * gx + (r.sxy[i] + r.wall_sxy[j]) * gy - viscosity * arm_x);
+      r.ay[i] += V * ((r.sxy[i] + r.wall_sxy[j]) * gx + (r.syy[i] + r.wall_syy[j]) * gy - viscosity * arm_y);
     }
   }
   return r;
@@ -249,6 +262,15 @@ INSTANTIATE_TEST_SUITE_P(
                     Option{"paper_norm_elastic", [](FlowConstants& k) { k.rheology.shear_rate = ShearRate::paper; }},
                     Option{"wendland", [](FlowConstants& k) { k.numerics.kernel = KernelShape::wendland_c2; }},
                     Option{"approaching", [](FlowConstants& k) { k.walls.contact = WallContact::approaching; }},
+                    Option{"reconstructed",
+                           [](FlowConstants& k) { k.numerics.velocity_jump = VelocityJump::reconstructed; }},
+                    Option{"reconstructed_linear_where_approaching",
+                           [](FlowConstants& k) {
+                             k.numerics.velocity_jump = VelocityJump::reconstructed;
+                             k.numerics.beta = 0.0;
+                             k.walls.contact = WallContact::approaching;
+                             k.boundaries = {frictionless, rough};
+                           }},
                     Option{"mass_form", [](FlowConstants& k) { k.numerics.continuity = Continuity::mass; }},
                     Option{"mass_form_of_touching_walls",
                            [](FlowConstants& k) {
