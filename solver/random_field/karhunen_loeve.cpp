@@ -28,8 +28,8 @@ std::vector<std::size_t> sorted(std::span<const Vec2> points) {
   return order;
 }
 
-double value(double f) { return f; }
-double square(double f) { return f * f; }
+double itself(double f) { return f; }
+double squared(double f) { return f * f; }
 
 }  // namespace
 
@@ -123,13 +123,13 @@ std::vector<double> KarhunenLoeve::expand(std::span<const Vec2> points, Shape sh
 std::vector<double> KarhunenLoeve::gaussian(std::span<const Vec2> points, std::span<const double> xi) const {
   std::vector<double> c(scale_);
   for (std::size_t k = 0; k < c.size(); ++k) c[k] *= xi[k];
-  return expand(points, value, c);
+  return expand(points, itself, c);
 }
 
 std::vector<double> KarhunenLoeve::variance(std::span<const Vec2> points) const {
   std::vector<double> c(scale_);
   for (double& scale : c) scale *= scale;
-  return expand(points, square, c);
+  return expand(points, squared, c);
 }
 
 }  // namespace talus
