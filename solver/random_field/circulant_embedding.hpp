@@ -54,7 +54,8 @@ class CirculantAxis {
     std::vector<double> weights = {1.0};
   };
   /// The mean over the cell around `x`, or the nearest node without a cell; beyond the ends the value of the last node
-  /// holds. @param x  coordinate [m]
+  /// holds.
+  /// @param x  coordinate [m]
   Stencil stencil(double x) const;
 
  private:
@@ -73,10 +74,10 @@ class CirculantAxis {
 
 /// Sampler of the field with covariance exp(-|dx|/ell_x - |dy|/ell_y) on a grid.
 ///
-/// With r = spacing/ell along an axis: the variance is exact at every point. The covariance of two points is that of
+/// The variance is exact at every point. With r = spacing/ell along an axis, the covariance of two points is that of
 /// their nodes, whose lag differs from theirs by less than one spacing; averaged over all positions of the grid it is
 /// the linear interpolation of the exact one, whose relative error is below r^2/8 (0.13 % with the default r = 0.1).
-/// Bilinear interpolation is worse: scaled to the exact variance its covariance is too large by r/3 on average.
+/// along that axis. Bilinear interpolation, scaled to the exact variance, has a covariance too large by up to r/3.
 class CirculantEmbedding {
  public:
   /// @param spec    what is asked for; its ranges have been checked
