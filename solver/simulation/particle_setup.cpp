@@ -73,9 +73,13 @@ FlowConstants flow_constants(const Model& model) {
           wall_friction(model.boundaries)};
 }
 
+namespace {
+
 /// No more than this presses in a run but for moments: the weight of soil as high as the fall, and its impact at the
 /// speed of the fall, rho v^2 with v^2 = 2 g H. [Pa]
 double largest_pressure(const Model& model, double rho0) { return 3.0 * rho0 * norm(model.g) * fall_height(model); }
+
+}  // namespace
 
 StepBounds step_bounds(const Model& model, const FlowConstants& k) {
   StepBounds bounds{model.numerics.cfl, k.h, k.c_s, 0.0};
