@@ -160,6 +160,11 @@ void check_choices(const Case& c, Faults& faults) {
     faults.add("/walls/layers", std::to_string(c.model.walls.layers) +
                                     " layers do not fill the kernel's support; smoothing_ratio " +
                                     to_text(c.model.numerics.h_over_dx) + " needs " + to_text(std::ceil(reach)));
+  if (c.model.rheology.shear_rate == ShearRate::paper &&
+      std::ranges::any_of(c.model.materials, [](const Material& m) { return m.mu_i.has_value(); }))
+    faults.add(
+        "/rheology/shear_rate",
+        "\"paper\" is the norm of [Z20] Eq. 7, with which mu(I) is not defined; material mu_i needs \"consistent\"");
   if (!c.field) return;
   if (!c.field->mu && !c.field->mean)
     for (const Material& m : c.model.materials)

@@ -39,8 +39,8 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
             {"Gravity, downwards.", "9.81 at mid latitudes; n g in a centrifuge"});
   m.g = {0.0, -gravity};
   MaterialInput material;
-  in.object("material", "The soil: Mohr-Coulomb yield stress, Bingham viscosity.", Absent::fault,
-            [&](ObjectReader& section) { read_material(section, material); });
+  in.object("material", "The soil: Mohr-Coulomb yield stress, and a Bingham viscosity or mu(I) friction.",
+            Absent::fault, [&](ObjectReader& section) { read_material(section, material); });
   SlideInput slide;
   in.object("slide",
             "The soil that moves: outlines, or the ground surface before the slide and the slip surface beneath it.",

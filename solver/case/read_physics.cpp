@@ -6,6 +6,7 @@
 #include "case/sections.hpp"
 #include "math/angle.hpp"
 #include "simulation/checks.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
@@ -64,6 +65,55 @@ void read_snapshots(ObjectReader& in, TimeControl& t) {
   in.remove_record("snapshot_interval_s");
 }
 
+/// @param m  its high_rate_friction_angle_deg is read, mu_i is set but for delta_mu
+void read_inertial_friction(ObjectReader& in, MaterialInput& m) {
+  InertialFriction<> mu_i;
+  in.required_number("high_rate_friction_angle_deg", m.high_rate_friction_angle_deg, friction_angle,
+                     {"Friction angle at high shear rates, tan = mu_2; more than friction_angle_deg, whose tangent is "
+                      "mu_s. A random field varies mu_s; mu_2 - mu_s stays.",
+                      "inclined plane or rotating drum; Jop et al. 2006", "", "> friction_angle_deg and < 90"});
+  in.number(
+      "reference_inertial_number", mu_i.I_0, {"", 0.0, 100.0, true},
+      {"Inertial number I_0 at which friction has risen by half of mu_2 - mu_s.", "Jop et al. 2006 for glass beads"});
+  in.number_in_either(
+      "grain_diameter_m", mu_i.d, {"m", 0.0, 10.0, true},
+      {"Mean diameter d of the grains.", "sieve analysis", "none, required unless grain_diameter_mm is given"}, true,
+      {"grain_diameter_mm", {"mm", 0.0, 1e4, true}, 1e-3, {"The same in mm.", "sieve analysis", "none"}});
+  in.number("grain_density_kg_m3", mu_i.rho_s, {"kg/m3", 0.0, 1e5, true},
+            {"Density of the grains themselves.", "pycnometer; 2650 for quartz"});
+  in.number("high_rate_slope", mu_i.mu_inf, {"", 0.0, 10.0},
+            {"Slope of mu(I) far above I_0, which keeps the equations well posed; 0: mu(I) levels off at mu_2.",
+             "Barker & Gray 2017"});
+  m.mu_i = mu_i;
+}
+
+/// Viscosity or mu(I). A layer that states one of them drops what it would have inherited of the other.
+void read_rate_dependence(ObjectReader& in, MaterialInput& m) {
+  in.number("viscosity_Pa_s", m.eta, {"Pa s", 0.0, 1e9},
+            {"Viscosity once the soil has yielded; not together with mu_i.", "rheometer; [Z20] Eq. 4"});
+  in.exclude("mu_i", "viscosity_Pa_s");
+  in.object("mu_i",
+            "Friction that grows with the shear rate instead of a viscosity: mu(I) = mu_s + (mu_2 - mu_s) I/(I_0 + I), "
+            "I = shear rate x grain diameter / sqrt(pressure / grain density).",
+            Absent::skip, [&](ObjectReader& section) { read_inertial_friction(section, m); });
+  const bool own = in.find("mu_i") != nullptr;
+  if (!own && in.find("viscosity_Pa_s") != nullptr) m.mu_i.reset();
+  if (!m.mu_i) return;
+  m.eta = 0.0;
+  in.remove_record("viscosity_Pa_s");
+  m.mu_i->delta_mu = std::tan(radians(m.high_rate_friction_angle_deg)) - std::tan(m.phi);
+  if (m.mu_i->delta_mu > 0.0) return;
+  if (own)
+    in.faults().add(pointer_to(in.pointer("mu_i"), "high_rate_friction_angle_deg"),
+                    to_text(m.high_rate_friction_angle_deg) + " does not exceed friction_angle_deg, " +
+                        to_text(m.friction_angle_deg) + "; friction grows with the shear rate");
+  else
+    in.fault("friction_angle_deg", to_text(m.friction_angle_deg) +
+                                       " is not less than high_rate_friction_angle_deg of the default material's "
+                                       "mu_i, " +
+                                       to_text(m.high_rate_friction_angle_deg) + "; give this layer a mu_i of its own");
+}
+
 }  // namespace
 
 void read_material(ObjectReader& in, MaterialInput& m) {
@@ -86,8 +136,7 @@ void read_material(ObjectReader& in, MaterialInput& m) {
   in.number_in_either("cohesion_Pa", m.c, {"Pa", 0.0, 1e9},
                       {"Cohesion c of the yield stress.", "laboratory; [Z20] Eq. 5"}, false,
                       {"cohesion_kPa", {"kPa", 0.0, 1e6}, 1000.0, {"The same in kPa.", "laboratory", "none"}});
-  in.number("viscosity_Pa_s", m.eta, {"Pa s", 0.0, 1e9},
-            {"Viscosity once the soil has yielded.", "rheometer; [Z20] Eq. 4"});
+  read_rate_dependence(in, m);
 }
 
 void read_rheology(ObjectReader& in, Rheology& r) {

@@ -27,9 +27,10 @@ struct SourceLocations {
 /// @param origins    returns where the vertices of bed and slide are written
 Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceLocations& origins);
 
-/// A material and its friction angle as written, so that a layer which inherits the angle repeats it exactly.
+/// A material and its friction angles as written, so that a layer which inherits an angle repeats it exactly.
 struct MaterialInput : Material {
   double friction_angle_deg = 0.0;
+  double high_rate_friction_angle_deg = 90.0;  ///< of mu_i
 };
 
 // read_physics.cpp

@@ -44,6 +44,13 @@ const Usual friction_angle{"friction_angle_deg",
                            "0, or 2 to 60 deg",
                            {{0.0, 2.0, "a value in radians, or tan(phi), is converted to degrees"}}};
 const Usual viscosity{"viscosity_Pa_s", "Pa s", 0.0, 1e6, "up to 1e6 Pa s", {}};
+const Usual grain_diameter{"grain_diameter_m",
+                           "m",
+                           1e-6,
+                           0.5,
+                           "0.001 mm to 0.5 m",
+                           {{0.5, 10.0, "a diameter in mm is given as grain_diameter_mm"}}};
+const Usual grain_density{"grain_density_kg_m3", "kg/m3", 1000.0, 8000.0, "1000 to 8000 kg/m3", {}};
 const Usual shear_modulus{"shear_modulus_Pa",
                           "Pa",
                           1e4,
@@ -79,6 +86,10 @@ void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings) {
     if (k == 0 || m.phi != base.phi) warn(friction_angle, degrees(m.phi), section, warnings);
     if (k == 0 || m.c != base.c) warn(cohesion, m.c, section, warnings);
     if (k == 0 || m.eta != base.eta) warn(viscosity, m.eta, section, warnings);
+    if (m.mu_i && (k == 0 || m.mu_i != base.mu_i)) {
+      warn(grain_diameter, m.mu_i->d, section + "/mu_i", warnings);
+      warn(grain_density, m.mu_i->rho_s, section + "/mu_i", warnings);
+    }
   }
   if (model.rheology.G) warn(shear_modulus, *model.rheology.G, "/rheology", warnings);
 }

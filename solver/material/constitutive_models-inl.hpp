@@ -50,6 +50,26 @@ HWY_INLINE Real yield_stress(Real c, Real tan_phi, Real p) {
   return fma(max(p, Real(0.0)), tan_phi, c);
 }
 
+/// mu(I) = mu_s + (delta_mu I + mu_inf I^2)/(I_0 + I), I = gamma_dot d sqrt(rho_s/p)
+/// Jop, Forterre & Pouliquen 2006 (Nature 441) with mu_inf = 0; Barker & Gray 2017 (J. Fluid Mech. 828) with the last
+/// term.
+///
+/// The yield stress carries p mu_s. The rest, p (mu(I) - mu_s) = eta gamma_dot, is this viscosity:
+///   eta = s d (delta_mu + mu_inf I)/(I_0 + I),  I = gamma_dot d rho_s/s,  s = sqrt(p rho_s)
+/// multiplied out, so that soil without pressure, or at rest, divides nothing by zero. It is zero without pressure.
+///
+/// Incompressible and rigid below the yield stress, the law of Jop et al. is ill posed at low and at high I (Barker et
+/// al. 2015, J. Fluid Mech. 779). At high I the slope mu_inf is the cure of Barker & Gray. At low I theirs is a curve
+/// that falls to zero with I, which leaves no yield stress and lets every slope creep. It is not needed here: pressure
+/// and yield stress follow from the density and the elastic stress, which are integrals of the velocity gradient over
+/// time, so that only this viscosity acts on the present one, and p (mu(I) - mu_s) grows with the shear rate everywhere
+/// (on compressibility as a cure: Heyman et al. 2017, J. Fluid Mech. 830).
+template <class Real>
+HWY_INLINE Real inertial_viscosity(const InertialFriction<Real>& of, Real p, Real gamma_dot) {
+  const Real s = sqrt(max(p, Real(0.0)) * of.rho_s), Is = gamma_dot * of.d * of.rho_s;
+  return s * of.d * fma(of.mu_inf, Is, of.delta_mu * s) / max(fma(of.I_0, s, Is), Real(1e-30));
+}
+
 /// What a constitutive model is told of a point.
 template <class Real>
 struct PointState {
@@ -59,7 +79,7 @@ struct PointState {
   Real p;            ///< pressure [Pa]
   Real c;            ///< cohesion [Pa]
   Real tan_phi;      ///< tangent of the friction angle [-]
-  Real eta;          ///< viscosity once it has yielded [Pa s]
+  Real eta;          ///< viscosity once it has yielded, that of mu(I) included [Pa s]
   Real two_G;        ///< twice the numerical shear modulus [Pa]
 };
 

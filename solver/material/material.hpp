@@ -1,18 +1,40 @@
 #pragma once
 // What a soil is made of, and how it yields.
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 
 namespace talus {
 
-/// A Mohr-Coulomb soil that flows as a Bingham fluid, [Z20] Eqs. 3-6.
+/// Friction that grows with the shear rate, the mu(I) rheology of dry grains; mu_s is the tan(phi) of the yield stress.
+/// Without delta_mu and mu_inf there is none. Law and sources: constitutive_models-inl.hpp.
+template <class Real = double>
+struct InertialFriction {
+  Real delta_mu = Real(0.0);  ///< mu_2 - mu_s, how far friction rises   [-],     >= 0
+  Real I_0 = Real(0.279);     ///< inertial number of half the rise      [-],     > 0; glass beads, Jop et al. 2006
+  Real mu_inf = Real(0.05);   ///< slope of mu(I) at high I              [-],     >= 0; Barker & Gray 2017
+  Real d = Real(0.0);         ///< grain diameter                        [m],     >= 0
+  Real rho_s = Real(2650.0);  ///< density of the grains                 [kg/m3], > 0; quartz
+  bool operator==(const InertialFriction&) const = default;
+};
+
+/// The largest viscosity that this friction stands for at pressures up to p [Pa], at any shear rate:
+/// sqrt(p rho_s) d max(delta_mu/I_0, mu_inf). [Pa s]
+inline double largest_viscosity(const InertialFriction<>& of, double p) {
+  return std::sqrt(p * of.rho_s) * of.d * std::max(of.delta_mu / of.I_0, of.mu_inf);
+}
+
+/// A Mohr-Coulomb soil, [Z20] Eqs. 3-6, whose resistance to flow grows with the rate as that of a Bingham fluid or by
+/// mu(I).
 struct Material {
   std::string name = "soil";
-  double rho0 = 2000.0;  ///< reference density                 [kg/m3], > 0
-  double phi = 0.0;      ///< friction angle                    [rad],   in [0, pi/2)
-  double c = 0.0;        ///< cohesion                          [Pa],    >= 0
-  double eta = 0.0;      ///< viscosity once it has yielded     [Pa s],  >= 0
+  double rho0 = 2000.0;                         ///< reference density                 [kg/m3], > 0
+  double phi = 0.0;                             ///< friction angle                    [rad],   in [0, pi/2)
+  double c = 0.0;                               ///< cohesion                          [Pa],    >= 0
+  double eta = 0.0;                             ///< viscosity once it has yielded     [Pa s],  >= 0
+  std::optional<InertialFriction<>> mu_i = {};  ///< instead of a viscosity
   bool operator==(const Material&) const = default;
 };
 

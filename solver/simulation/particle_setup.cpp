@@ -73,12 +73,23 @@ FlowConstants flow_constants(const Model& model) {
           wall_friction(model.boundaries)};
 }
 
+namespace {
+
+/// No more than this presses in a run but for moments: the weight of soil as high as the fall, and its impact at the
+/// speed of the fall, rho v^2 with v^2 = 2 g H. [Pa]
+double largest_pressure(const Model& model, double rho0) { return 3.0 * rho0 * norm(model.g) * fall_height(model); }
+
+}  // namespace
+
 StepBounds step_bounds(const Model& model, const FlowConstants& k) {
   StepBounds bounds{model.numerics.cfl, k.h, k.c_s, 0.0};
+  double densest = 0.0;
+  for (const ConstitutiveParameters& law : k.soils) densest = std::max(densest, law.eos.rho0);
   for (const ConstitutiveParameters& law : k.soils) {
     if (keeps_elastic_stress(model.rheology.yield))
       bounds.c = std::max(bounds.c, std::sqrt(k.c_s * k.c_s + 4.0 / 3.0 * law.G / law.eos.rho0));
-    bounds.nu = std::max(bounds.nu, law.eta / law.eos.rho0);
+    const double eta = law.eta + largest_viscosity(law.mu_i, largest_pressure(model, densest));
+    bounds.nu = std::max(bounds.nu, eta / law.eos.rho0);
   }
   return bounds;
 }

@@ -101,6 +101,22 @@ struct FlowRateSums {
   }
 };
 
+/// Viscosity of a point once it has yielded: that of its material, or that of mu(I).
+/// @param at  as in update_point
+template <class Real, class Point>
+HWY_INLINE Real yielded_viscosity(const Point& at, Real p, Real gamma_dot) {
+  using Parameters = const ConstitutiveParameters&;
+  const Real eta = at.constant([](Parameters soil) { return soil.eta; });
+  const Real d = at.constant([](Parameters soil) { return soil.mu_i.d; });
+  if (!any(d > Real(0.0))) return eta;
+  const InertialFriction<Real> mu_i{.delta_mu = at.constant([](Parameters soil) { return soil.mu_i.delta_mu; }),
+                                    .I_0 = at.constant([](Parameters soil) { return soil.mu_i.I_0; }),
+                                    .mu_inf = at.constant([](Parameters soil) { return soil.mu_i.mu_inf; }),
+                                    .d = d,
+                                    .rho_s = at.constant([](Parameters soil) { return soil.mu_i.rho_s; })};
+  return eta + inertial_viscosity(mu_i, p, gamma_dot);
+}
+
 /// Pressure, stress, and the rates of density and elastic stress.                [Z20] Eqs. 1, 3-10
 /// @param tan_phi  of the soil, or of the wall that it slides along
 /// @param at       the point, or the points of a cluster: q(), c(), constant(get) of its ConstitutiveParameters;
@@ -115,19 +131,20 @@ HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const F
   if (k.numerics.tension_cutoff) p = apply_tension_cutoff(p);
   at.set_strain_rate(strain_rate(rates.L));
   const Deviator<Real> e = deviatoric_strain_rate(rates.L);
+  const Real gamma_dot = shear_rate(e, k.rheology.shear_rate);
   const PointState<Real> state{.e = e,
                                .two_spin = two_spin(rates.L),
-                               .gamma_dot = shear_rate(e, k.rheology.shear_rate),
+                               .gamma_dot = gamma_dot,
                                .p = p,
                                .c = at.c(),
                                .tan_phi = tan_phi,
-                               .eta = at.constant([](Parameters soil) { return soil.eta; }),
+                               .eta = yielded_viscosity(at, p, gamma_dot),
                                .two_G = at.constant([](Parameters soil) { return 2.0 * soil.G; })};
   const Deviator<Real> t = model.stress(state, at.elastic());
   at.set_stress(cauchy(p, t), p);
   // drho/dt = -rho expansion + rho0 diffusion
   const Real rho0 = at.constant([](Parameters soil) { return soil.eos.rho0; });
-  at.set_rates(rho0 * fnma(q + Real(1.0), rates.expansion, rates.diffusion), state.gamma_dot);
+  at.set_rates(rho0 * fnma(q + Real(1.0), rates.expansion, rates.diffusion), gamma_dot);
   at.set_powers([&](Real V) HWY_ATTR {
     return stress_powers(V, p, t, e, state.eta, trace(rates.L), rates.expansion, rates.diffusion, q);
   });

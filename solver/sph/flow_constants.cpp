@@ -10,7 +10,8 @@ std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Ma
   for (const Material& m : materials)
     soils.push_back({.eos = EquationOfState::weakly_compressible(m.rho0, c_s),
                      .eta = m.eta,
-                     .G = rheology.G.value_or(0.1 * m.rho0 * c_s * c_s)});
+                     .G = rheology.G.value_or(0.1 * m.rho0 * c_s * c_s),
+                     .mu_i = m.mu_i.value_or(InertialFriction<>{})});
   return soils;
 }
 

@@ -18,6 +18,7 @@ struct ConstitutiveParameters {
   EquationOfState eos;
   double eta;  ///< viscosity once it has yielded [Pa s]
   double G;    ///< numerical shear modulus of the elastic law [Pa]
+  InertialFriction<> mu_i;
 };
 
 /// What the wall law needs to know of a boundary.

@@ -156,6 +156,7 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   mutations.spoil(example("full"));
   mutations.spoil(example("surfaces"));
   mutations.spoil(example("joined"));
+  mutations.spoil(example("mu-i"));
   // The forms that the examples do not hold: the other file, the other step.
   json other = example("surfaces");
   other["slide"] = {{"ground_surface_m", {{0, 20}, {6, 20}, {24, 6}}}, {"slip_surface_csv", "case-bed.csv"}};
@@ -164,6 +165,10 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   mutations.spoil(other);
   other["material"] = {{"unit_weight_kN_m3", 19}, {"friction_angle_deg", 24}, {"cohesion_kPa", 5}};
   other["slide"]["outlines"][0]["material"] = {{"unit_weight_kN_m3", 18}, {"cohesion_kPa", 2}};
+  mutations.spoil(other);
+  for (json* material : {&other["material"], &other["slide"]["outlines"][0]["material"]}) {
+    (*material)["mu_i"] = {{"high_rate_friction_angle_deg", 40}, {"grain_diameter_mm", 3}};
+  }
   mutations.spoil(other);
   other = example("joined");
   other["terrain"] = {{"ground_beyond_csv", "case-bed.csv"}};

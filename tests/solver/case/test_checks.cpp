@@ -136,6 +136,20 @@ TEST(Warnings, ValuesThatNoSoilHasNameTheUnitMeant) {
   }
 }
 
+TEST(Warnings, GrainsThatNoSoilHas) {
+  const auto of_grains = [](const char* key, double value) {
+    Json grains = {{"high_rate_friction_angle_deg", 40}, {"grain_diameter_m", 0.002}};
+    grains[key] = value;
+    return warning_of(with("/material/mu_i", grains));
+  };
+  EXPECT_EQ(of_grains("grain_diameter_m", 0.002), "");
+  EXPECT_EQ(of_grains("grain_diameter_m", 5),
+            "/material/mu_i/grain_diameter_m: 5 m is unusual for soil (0.001 mm to 0.5 m); a diameter in mm is given "
+            "as grain_diameter_mm");
+  EXPECT_EQ(of_grains("grain_density_kg_m3", 2.65),
+            "/material/mu_i/grain_density_kg_m3: 2.65 kg/m3 is unusual for soil (1000 to 8000 kg/m3)");
+}
+
 TEST(Warnings, ALayerIsWarnedOfWhereItStands) {
   const Json layered = with("/slide/outlines/0/material", {{"density_kg_m3", 19.4}});
   EXPECT_EQ(warning_of(layered).find("/slide/outlines/0/material/density_kg_m3: 19.4 kg/m3"), 0u);

@@ -8,6 +8,7 @@
 
 #include "case/load.hpp"
 #include "documents.hpp"
+#include "math/angle.hpp"
 
 namespace talus {
 namespace {
@@ -74,6 +75,68 @@ TEST(LoadCase, RefusesAValueInTwoUnits) {
       faults_of(with("/material", {{"friction_angle_deg", 30}})),
       std::vector<std::string>{"/material/density_kg_m3: is missing (or unit_weight_kN_m3); unit kg/m3, allowed > "
                                "0 and <= 1e+05"});
+}
+
+const Json grains = Json::parse(
+    R"({"high_rate_friction_angle_deg": 38, "reference_inertial_number": 0.3, "grain_diameter_m": 0.004,
+        "grain_density_kg_m3": 2700, "high_rate_slope": 0.02})");
+
+TEST(LoadCase, MuIReachesItsMembersWithTheFrictionThatItAdds) {
+  const Material m = test::load(with("/material/mu_i", grains)).value.model.materials[0];
+  const double rise = std::tan(radians(38)) - std::tan(radians(30));
+  EXPECT_EQ(m.mu_i, (InertialFriction<>{rise, 0.3, 0.02, 0.004, 2700}));
+  EXPECT_EQ(m.eta, 0.0);
+  const LoadedCase in_mm =
+      test::load(with("/material/mu_i", {{"high_rate_friction_angle_deg", 38}, {"grain_diameter_mm", 4}}));
+  EXPECT_EQ(in_mm.value.model.materials[0].mu_i, (InertialFriction<>{rise, 0.279, 0.05, 0.004, 2650}));
+  EXPECT_EQ(in_mm.resolved["material"]["mu_i"]["grain_diameter_m"], 0.004);
+}
+
+TEST(LoadCase, ALayerStatesItsOwnRateDependenceOrInheritsIt) {
+  Json base = with("/slide/outlines/0/material", {{"friction_angle_deg", 35}});
+  const auto layer_of = [](const Json& document) {
+    const LoadedCase loaded = test::load(document), again = test::load(loaded.resolved);
+    EXPECT_EQ(loaded.hash, again.hash) << "the resolved case is a case, and the same one";
+    EXPECT_EQ(loaded.value.model.materials, again.value.model.materials);
+    return loaded.value.model.materials.at(1);
+  };
+  base["material"]["mu_i"] = grains;
+  EXPECT_EQ(layer_of(base).mu_i->delta_mu, std::tan(radians(38)) - std::tan(radians(35)));
+  EXPECT_EQ(layer_of(base).mu_i->d, 0.004);
+  base["slide"]["outlines"][0]["material"]["viscosity_Pa_s"] = 0;
+  EXPECT_FALSE(layer_of(base).mu_i);
+  base["material"].erase("mu_i");
+  base["material"]["viscosity_Pa_s"] = 70;
+  base["slide"]["outlines"][0]["material"] = {{"mu_i", grains}};
+  EXPECT_EQ(layer_of(base).eta, 0.0);
+  EXPECT_EQ(layer_of(base).mu_i->d, 0.004);
+}
+
+TEST(LoadCase, RefusesMuIThatContradictsTheRest) {
+  const auto faults = [](const char* at, Json value, Json document) {
+    return faults_of(with(at, std::move(value), std::move(document)));
+  };
+  const Json flowing = with("/material/mu_i", grains);
+  EXPECT_EQ(faults("/material/viscosity_Pa_s", 5, flowing),
+            std::vector<std::string>{"/material/mu_i: is given beside viscosity_Pa_s; give one of the two"});
+  EXPECT_EQ(faults("/material/friction_angle_deg", 38, flowing),
+            std::vector<std::string>{"/material/mu_i/high_rate_friction_angle_deg: 38 does not exceed "
+                                     "friction_angle_deg, 38; friction grows with the shear rate"});
+  EXPECT_EQ(faults("/slide/outlines/0/material", {{"friction_angle_deg", 40}}, flowing),
+            std::vector<std::string>{
+                "/slide/outlines/0/material/friction_angle_deg: 40 is not less than high_rate_friction_angle_deg of "
+                "the default material's mu_i, 38; give this layer a mu_i of its own"});
+  EXPECT_EQ(faults("/rheology/shear_rate", "paper", flowing),
+            std::vector<std::string>{
+                "/rheology/shear_rate: \"paper\" is the norm of [Z20] Eq. 7, with which mu(I) is not defined; "
+                "material mu_i needs \"consistent\""});
+  EXPECT_EQ(faults("/material/mu_i/grain_diameter_mm", 4, flowing),
+            std::vector<std::string>{
+                "/material/mu_i/grain_diameter_mm: is given beside grain_diameter_m; give one of the two"});
+  EXPECT_EQ(faults("/material/mu_i", Json::object(), minimal()),
+            (std::vector<std::string>{
+                "/material/mu_i/high_rate_friction_angle_deg: is missing; unit deg, allowed >= 0 and < 90",
+                "/material/mu_i/grain_diameter_m: is missing (or grain_diameter_mm); unit m, allowed > 0 and <= 10"}));
 }
 
 TEST(LoadCase, EveryNumberReachesItsMember) {

@@ -113,6 +113,22 @@ TEST(Powers, ViscosityAndFrictionOfTheRegularisedLaw) {
   }
 }
 
+TEST(Powers, WhatMuOfITakesBeyondTheYieldStressIsViscous) {
+  FlowConstants k = constants(0.1);
+  k.soils[0].eta = 0;
+  k.soils[0].mu_i = {.delta_mu = 0.3, .I_0 = 0.2, .mu_inf = 0.1, .d = 0.05, .rho_s = 2600};
+  const Evaluated at(k, random_soil(9, 8, k.dx, 5), flat_walls(9, k.dx));
+  std::size_t pressed = 0;
+  for (std::size_t i = 0; i < at.soil.size(); ++i) {
+    const double V = at.soil.m[i] / at.soil.rho[i], gamma_dot = at.soil.gamma_dot[i], p = at.soil.p[i];
+    const double I = p > 0 ? gamma_dot * 0.05 / std::sqrt(p / 2600) : 0;
+    const double share = V * p * (0.3 * I + 0.1 * I * I) / (0.2 + I) * gamma_dot;
+    EXPECT_NEAR(at.powers.viscosity[i], share, 1e-10 * share);
+    pressed += p > 0;
+  }
+  EXPECT_GT(pressed, at.soil.size() / 3);
+}
+
 TEST(Powers, OfAnElasticStressInSimpleShear) {
   // t = (., ., t_xy) in v_x = gamma y: V t_xy gamma, whatever txx and tyy; viscosity V eta gamma^2.
   using namespace HWY_NAMESPACE;

@@ -103,12 +103,17 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     const bool printed = k.rheology.shear_rate == ShearRate::paper;
     r.gamma_dot[i] = std::sqrt((printed ? 2.0 / 3 : 2.0) * norm2_e);
     const double tau_y = s.c[i] + std::max(p, 0.0) * tan_phi;
+    double eta = law.eta;
+    if (const InertialFriction<>& grains = law.mu_i; grains.d > 0 && p > 0) {
+      const double I = r.gamma_dot[i] * grains.d / std::sqrt(p / grains.rho_s);
+      eta += p * (grains.delta_mu * I + grains.mu_inf * I * I) / (grains.I_0 + I) / r.gamma_dot[i];
+    }
     r.p[i] = p;
     if (k.rheology.yield == Yield::regularized) {
-      const double eta = law.eta + tau_y / std::max(r.gamma_dot[i], 1e-3);
-      r.sxx[i] = -p + 2 * eta * exx;
-      r.syy[i] = -p + 2 * eta * eyy;
-      r.sxy[i] = 2 * eta * exy;
+      const double eta_y = eta + tau_y / std::max(r.gamma_dot[i], 1e-3);
+      r.sxx[i] = -p + 2 * eta_y * exx;
+      r.syy[i] = -p + 2 * eta_y * eyy;
+      r.sxy[i] = 2 * eta_y * exy;
     } else {
       double txx = s.txx[i], tyy = s.tyy[i], txy = s.txy[i];
       const double size = std::sqrt((txx * txx + tyy * tyy + (txx + tyy) * (txx + tyy) + 2 * txy * txy) / 2);
@@ -123,9 +128,9 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       r.dtxx[i] = 2 * omega * txy + 2 * law.G * exx;
       r.dtyy[i] = -2 * omega * txy + 2 * law.G * eyy;
       r.dtxy[i] = omega * tyy - txx * omega + 2 * law.G * exy;
-      r.sxx[i] = -p + txx + 2 * law.eta * exx;
-      r.syy[i] = -p + tyy + 2 * law.eta * eyy;
-      r.sxy[i] = txy + 2 * law.eta * exy;
+      r.sxx[i] = -p + txx + 2 * eta * exx;
+      r.syy[i] = -p + tyy + 2 * eta * eyy;
+      r.sxy[i] = txy + 2 * eta * exy;
     }
   }
   for (std::size_t q = 0; q < nw; ++q) {
@@ -300,6 +305,17 @@ INSTANTIATE_TEST_SUITE_P(
                              k.boundaries = {frictionless, smoother};
                              k.walls.contact = WallContact::approaching;
                              k.rheology.yield = Yield::regularized;
+                           }},
+                    Option{"mu_i_of_both_soils",
+                           [](FlowConstants& k) {
+                             k.soils[0].mu_i = {.delta_mu = 0.3, .I_0 = 0.2, .mu_inf = 0.1, .d = 0.05, .rho_s = 2600};
+                             k.soils[1].mu_i = {.delta_mu = 0.2, .I_0 = 0.4, .mu_inf = 0.3, .d = 0.02, .rho_s = 2800};
+                           }},
+                    Option{"mu_i_of_one_soil_regularized",
+                           [](FlowConstants& k) {
+                             k.soils[1].mu_i = {.delta_mu = 0.3, .I_0 = 0.2, .mu_inf = 0.1, .d = 0.05, .rho_s = 2600};
+                             k.rheology.yield = Yield::regularized;
+                             k.numerics.tension_cutoff = false;
                            }},
                     Option{"tension", [](FlowConstants& k) { k.numerics.tension_cutoff = false; }},
                     Option{"no_diffusion", [](FlowConstants& k) { k.numerics.density_filter = DensityFilter::none; }}),
