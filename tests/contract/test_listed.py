@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Every test file, and every source file, is named in a CMakeLists.txt: one that is in no build passes silently. Every
-source file is named, with or without its ending, in the README of its module.
+source file is named, with or without its ending, in backquotes in the README of its module.
 
 usage: test_listed.py SOURCE_DIR
 """
@@ -19,7 +19,7 @@ def names(file):
 def undocumented(source):
     """Source files that the README beside them does not name."""
     for readme in sorted(readme for part in ("solver", "service") for readme in (source / part).rglob("README.md")):
-        words = set(re.findall(r"[\w-]+", readme.read_text()))
+        words = set(re.findall(r"[\w-]+", " ".join(re.findall("`([^`\n]+)`", readme.read_text()))))
         for file in sorted(readme.parent.glob("*.?pp")):
             if not words & {file.stem, file.stem.removesuffix("-inl")}:
                 yield f"{file}: not named in {readme}"
