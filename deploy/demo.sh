@@ -5,7 +5,7 @@
 #   OUT=DIR           directory of the study (default out/demo in the sources)
 #   REALIZATIONS=N    number of realizations (default 16)
 #   BIN=DIR           directory of installed talus and talusd; nothing is installed or built
-#   CASE=FILE         another case
+#   CASE=FILE         another case (default: the illustrative slope, of the sources or installed beside BIN)
 #   TALUS_SERVER=URL  a running talusd (its token in TALUS_TOKEN): only the part over HTTP
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -17,7 +17,9 @@ if [ -z "${BIN:-}" ]; then
   [ -f build/release/build.ninja ] || cmake --preset release -DTALUS_TESTS=OFF -DCMAKE_UNITY_BUILD=ON >/dev/null
   cmake --build --preset release --target talus talusd
 fi
-study=("${CASE:-solver/cases/illustrative.json}"
+case=solver/cases/illustrative.json
+[ -f "$case" ] || case=$bin/../share/talus/cases/illustrative.json
+study=("${CASE:-$case}"
        --set particle_spacing_m=0.4 --set random_field.terms=200 --set study.noise_floor_replicates=3
        --realizations "${REALIZATIONS:-16}" --seed 2020)
 
@@ -47,3 +49,4 @@ echo "the same over HTTP, by $TALUS_SERVER:"
 job=$("$bin/talus" submit "${study[@]}")
 "$bin/talus" watch "$job"
 curl -s ${TALUS_TOKEN:+-H "Authorization: Bearer $TALUS_TOKEN"} "$TALUS_SERVER/jobs/$job/histogram"
+echo

@@ -110,13 +110,13 @@ CommandOutput Jobs::prepare(const fs::path& case_file, const StudyPaths& directo
 }
 
 template <class Semaphore>
-CommandOutput Jobs::run(const Command& command, seconds limit, Semaphore& places, seconds patience) {
-  if (!places.try_acquire_for(patience))
+CommandOutput Jobs::run(const Command& command, seconds limit, Semaphore& slots, seconds patience) {
+  if (!slots.try_acquire_for(patience))
     throw Refusal(reason::unavailable, "too many requests of this kind at once", {}, 10);
   struct Releaser {
-    Semaphore& places;
-    ~Releaser() { places.release(); }
-  } const releaser{places};
+    Semaphore& slots;
+    ~Releaser() { slots.release(); }
+  } const releaser{slots};
   CommandOutput output = run_to_end(command, data_.scratch(), limit, [this] { return stopping_.load(); });
   if (stopping_) throw Refusal(reason::unavailable, "talusd is stopping");
   if (output.timed_out)

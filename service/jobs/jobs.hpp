@@ -61,7 +61,7 @@ class Jobs {
   /// `talus run ARGUMENTS` outside the queue.
   CommandOutput run_once(std::vector<std::string> arguments, std::chrono::seconds limit);
   template <class Semaphore>
-  CommandOutput run(const Command& command, std::chrono::seconds limit, Semaphore& places,
+  CommandOutput run(const Command& command, std::chrono::seconds limit, Semaphore& slots,
                     std::chrono::seconds patience);
   /// Makes `directory` that of a study, or extends the study in it.
   CommandOutput prepare(const std::filesystem::path& case_file, const StudyPaths& directory, std::int64_t realizations,

@@ -11,13 +11,6 @@
 namespace talus {
 namespace {
 
-/// Area of the whole slide. [m2]
-double slide_area(const Model& model) {
-  double sum = 0.0;
-  for (const SlidePart& part : model.slide) sum += area(part.outline);
-  return sum;
-}
-
 void check_apart(const Model& model, const SourceLocations& origins, Faults& faults) {
   for (std::size_t a = 0; a < model.slide.size(); ++a)
     for (std::size_t b = a + 1; b < model.slide.size(); ++b)
@@ -67,27 +60,20 @@ void check_on_ground(const SlidePart& part, const Vertices& origin, const Model&
 }
 
 void check_counts(const Model& model, Faults& faults) {
-  const double soil = slide_area(model);
-  const double cells = soil / (model.dx * model.dx);
-  double line = 0.0;
-  for (const Polyline& wall : wall_lines(model.boundaries, model.dx, model.placement)) line += wall.length();
-  const double estimate = cells + model.walls.layers * line / model.dx;
-  if (cells < 1.0)
-    faults.add("/particle_spacing_m", "leaves no particle: the slide's area, " + rounded(soil) +
+  const ParticleEstimate estimate = estimate_particles(model, wall_lines(model.boundaries, model.dx, model.placement));
+  if (estimate.soil_area < model.dx * model.dx)
+    faults.add("/particle_spacing_m", "leaves no particle: the slide's area, " + rounded(estimate.soil_area) +
                                           " m2, is less than one cell of " + rounded(model.dx * model.dx) + " m2");
-  if (estimate <= static_cast<double>(model.max_particles)) return;
-  // N = A/dx^2 + L n/dx, solved for the spacing that just fits.
-  const double n = static_cast<double>(model.max_particles), wall = model.walls.layers * line;
-  faults.add("/particle_spacing_m", "makes about " + rounded(estimate) + " particles, more than max_particles, " +
-                                        std::to_string(model.max_particles) + "; a spacing from " +
-                                        rounded((wall + std::sqrt(wall * wall + 4.0 * n * soil)) / (2.0 * n)) +
-                                        " m on fits");
+  if (estimate.count(model.dx) <= static_cast<double>(model.max_particles)) return;
+  faults.add("/particle_spacing_m",
+             "makes about " + rounded(estimate.count(model.dx)) + " particles, more than max_particles, " +
+                 std::to_string(model.max_particles) + "; a spacing from " +
+                 rounded(estimate.spacing_for(static_cast<double>(model.max_particles))) + " m on fits");
 }
 
 /// The energy line that falls from the slide's points at the smallest friction angle: how high it passes over `end`.
 double energy_line_over(const Model& model, Vec2 end) {
-  double phi = 1.5707;
-  for (const Material& m : model.materials) phi = std::min(phi, m.phi);
+  const double phi = std::ranges::min(model.materials, {}, &Material::phi).phi;
   double height = -std::numeric_limits<double>::infinity();
   for (const SlidePart& part : model.slide)
     for (const Vec2& v : part.outline) height = std::max(height, v.y - std::tan(phi) * std::abs(end.x - v.x));

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "case/load.hpp"
-#include "particles/ground.hpp"
+#include "particles/line_fit.hpp"
 
 namespace talus {
 

@@ -4,25 +4,25 @@
 #include <cmath>
 #include <limits>
 
+#include "particles/geometry.hpp"
+
 namespace talus {
 namespace {
 
 using Surface = std::span<const Vec2>;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-double on_segment(Vec2 a, Vec2 b, double x) { return a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x); }
-
 /// Height at x on the right of a vertical face there.
 double height_after(Surface s, double x) {
   const auto next = std::ranges::upper_bound(s, x, {}, &Vec2::x);
   const Vec2 last = *(next - 1);
-  return last.x == x || next == s.end() ? last.y : on_segment(last, *next, x);
+  return last.x == x || next == s.end() ? last.y : height_at(last, *next, x);
 }
 
 /// Height at x on the left of a vertical face there.
 double height_before(Surface s, double x) {
   const auto next = std::ranges::lower_bound(s, x, {}, &Vec2::x);
-  return next->x == x || next == s.begin() ? next->y : on_segment(*(next - 1), *next, x);
+  return next->x == x || next == s.begin() ? next->y : height_at(*(next - 1), *next, x);
 }
 
 bool has_vertex(Surface s, Vec2 v) {

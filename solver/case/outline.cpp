@@ -1,29 +1,17 @@
 #include "case/outline.hpp"
 
 #include <algorithm>
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/multi_polygon.hpp>
-#include <boost/geometry/geometries/polygon.hpp>
-#include <boost/geometry/geometries/register/point.hpp>
+#include <limits>
 #include <numeric>
 
+#include "particles/geometry.hpp"
 #include "particles/ground.hpp"
-
-BOOST_GEOMETRY_REGISTER_POINT_2D(talus::Vec2, double, boost::geometry::cs::cartesian, x, y)
+#include "particles/polygon.hpp"
 
 namespace talus {
 namespace {
 
 namespace bg = boost::geometry;
-using Polygon = bg::model::polygon<Vec2, false, false>;  // counter-clockwise, first vertex not repeated
-using Polygons = bg::model::multi_polygon<Polygon>;
-
-Polygon to_polygon(std::span<const Vec2> outline) {
-  Polygon polygon;
-  polygon.outer().assign(outline.begin(), outline.end());
-  bg::correct(polygon);
-  return polygon;
-}
 
 /// Which side of the line a-b the point p lies on: -1, 0, 1.
 int side(Vec2 a, Vec2 b, Vec2 p) {
@@ -89,12 +77,6 @@ std::optional<EdgePair> self_intersection(std::span<const Vec2> vertices, bool c
   return {};
 }
 
-double signed_area(std::span<const Vec2> outline) {
-  double twice = 0.0;
-  for (std::size_t k = 0; k < outline.size(); ++k) twice += cross(outline[k], outline[(k + 1) % outline.size()]);
-  return 0.5 * twice;
-}
-
 double shared_area(std::span<const Vec2> a, std::span<const Vec2> b) {
   Polygons shared;
   bg::intersection(to_polygon(a), to_polygon(b), shared);
@@ -114,15 +96,16 @@ std::vector<std::vector<Vec2>> between_surfaces(std::span<const Vec2> ground, st
 }
 
 double height_beneath(std::span<const Vec2> bed, Vec2 point) {
-  double height = -1e300;
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  double height = none;
   for (std::size_t k = 0; k + 1 < bed.size(); ++k) {
     const Vec2 a = bed[k], b = bed[k + 1];
     if (std::min(a.x, b.x) > point.x || std::max(a.x, b.x) < point.x) continue;
-    const double y = a.x == b.x ? std::clamp(point.y, std::min(a.y, b.y), std::max(a.y, b.y))
-                                : a.y + (b.y - a.y) * (point.x - a.x) / (b.x - a.x);
+    const double y =
+        a.x == b.x ? std::clamp(point.y, std::min(a.y, b.y), std::max(a.y, b.y)) : height_at(a, b, point.x);
     if (y <= point.y) height = std::max(height, y);
   }
-  return height == -1e300 ? point.y : height;
+  return height == none ? point.y : height;
 }
 
 std::vector<Vec2> room_above(std::span<const Vec2> bed, double top) {

@@ -18,9 +18,6 @@ struct EdgePair {
 /// The first pair of edges that cross, touch or fold back on one another; neighbours may share their vertex.
 std::optional<EdgePair> self_intersection(std::span<const Vec2> vertices, bool closed);
 
-/// The area of an outline, positive when walked counter-clockwise. [m2]
-double signed_area(std::span<const Vec2> outline);
-
 /// Area that two outlines share. [m2]
 double shared_area(std::span<const Vec2> a, std::span<const Vec2> b);
 

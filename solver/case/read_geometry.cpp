@@ -96,8 +96,8 @@ void read_outline(ObjectReader& in, const std::filesystem::path& directory, cons
                                     "survey"});
   in.one_form({{{"outline_m"}}, {{"outline_csv"}}});
   int material = 0;
-  in.object("material", "What differs from the default material in this outline, for layered slides.", Absent::skip,
-            [&](ObjectReader& own) {
+  in.object("material", "Properties in this outline that differ from the default material, for layered slides.",
+            Absent::skip, [&](ObjectReader& own) {
               MaterialInput m = fallback;
               own.describe_defaults_as("the default material's");
               read_material(own, m);
@@ -128,7 +128,8 @@ void cut_outlines(ObjectReader& in, const Vertices& ground, const Vertices& slip
   in.record("outlines", std::move(resolved));
 }
 
-/// The way the bed falls from one end of the slide to the other; on level ground away from the wall at its end.
+/// The downhill side of the bed between the ends of the slide; on level ground the side away from an end wall that
+/// holds the slide.
 SlidesTo downhill(ObjectReader& in, const Terrain& t, const SlideInput& slide, double dx) {
   if (t.closed || t.bed.empty() || slide.parts.empty()) return SlidesTo::right;
   const Box box = bounding_box(slide.parts);
@@ -148,10 +149,11 @@ SlidesTo downhill(ObjectReader& in, const Terrain& t, const SlideInput& slide, d
 
 void read_run_out(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
   t.run_out.to = downhill(in, t, slide, dx);
-  in.choice("slides_to", t.run_out.to, directions,
-            {"The way the slide goes and run-outs are measured.", "site",
-             "the side to which the bed falls from one end of the slide to the other; on level ground away from the "
-             "wall at the slide's end, otherwise right; right in a closed bed"});
+  in.choice(
+      "slides_to", t.run_out.to, directions,
+      {"Direction in which the slide moves and run-outs are measured.", "site",
+       "downhill along the bed between the ends of the slide; on level ground away from an end wall that holds the "
+       "slide, otherwise right; right in a closed bed"});
   if (!t.bed.empty()) {
     const auto [left, right] = std::ranges::minmax(t.bed, {}, &Vec2::x);
     t.run_out.from = t.run_out.to == SlidesTo::right ? left.x : right.x;

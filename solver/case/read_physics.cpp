@@ -117,7 +117,7 @@ void read_rate_dependence(ObjectReader& in, MaterialInput& m) {
 }  // namespace
 
 void read_material(ObjectReader& in, MaterialInput& m) {
-  in.string("name", m.name, {1, 100}, {"What the material is called in messages and results."});
+  in.string("name", m.name, {1, 100}, {"Name of the material in messages and results."});
   in.number_in_either("density_kg_m3", m.rho0, {"kg/m3", 0.0, 1e5, true},
                       {"Reference density of the soil in place.", "laboratory; [Z20] Eq. 3",
                        "none, required unless unit_weight_kN_m3 is given"},

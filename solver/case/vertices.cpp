@@ -92,7 +92,7 @@ Vertices read_inline(const Json& value, const std::string& pointer, Faults& faul
   return out;
 }
 
-/// Whether a name is a relative path that goes down only: names joined by slashes, none of which begins with a point.
+/// Whether a name is a relative path that only goes down: names joined by slashes, none of which begins with a dot.
 bool goes_down(const std::string& name) {
   if (name.find('\\') != std::string::npos || name.find('\0') != std::string::npos) return false;
   for (std::size_t begin = 0; begin <= name.size();) {
@@ -144,8 +144,8 @@ void declare_vertices(ObjectReader& in, const std::string& inline_key, const std
   in.declare(
       csv_key, {{"type", "string"}, {"minLength", 1}, {"pattern", R"(^[^./\\][^/\\]*(/[^./\\][^/\\]*)*$)"}},
       {"The same as a CSV file beside the case or in a directory below it: distance and elevation in metres, separated "
-       "by comma, semicolon, tab or blanks. Of several columns those count that a header names x, distance, chainage, "
-       "station or offset, and y, z, elevation or height.",
+       "by comma, semicolon, tab or blanks. With more than two columns a header must name the two: x, distance, "
+       "chainage, station or offset; y, z, elevation or height.",
        text.source},
       "");
 }

@@ -264,7 +264,9 @@ void add_bench(CLI::App& app, Action& action) {
   CLI::App* verb = app.add_subcommand("bench", "Measure the speed of the solver on this machine");
   verb->add_option("CASE", o->case_file, "Case file (JSON); default: the illustrative slope");
   add_overrides(*verb, o->overrides);
-  const auto american = [](std::string word) { return word == "regularised" ? "regularized" : word; };
+  const auto american = [](const std::string& word) -> std::string {
+    return word == "regularised" ? "regularized" : word;
+  };
   verb->add_option("--sizes", o->sizes,
                    "Numbers of particles, walls included; the first is the base, from which one "
                    "setting at a time is varied")

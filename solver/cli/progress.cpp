@@ -111,7 +111,7 @@ std::string summary_table(const Json& study) {
   text += ", mean friction angle " + number(phi.at("mean"), "%.2f") + " deg, stdev " + number(phi.at("stdev"), "%.2f") +
           " deg\n\n";
   text += format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", "", "mean", "95 % interval", "stdev", "95 % interval",
-                 "floor", "median", "q95");
+                 "noise", "median", "q95");
   const auto at_least = [](bool lower_bound) { return std::string(lower_bound ? ">=" : ""); };
   for (const auto& [key, q] : study.at("quantities").items()) {
     const Json* median = quantile(q, 0.5);
@@ -130,7 +130,7 @@ std::string summary_table(const Json& study) {
     text +=
         format("soil left the terrain in %lld realizations, from %.2f m on: they may have gone any distance beyond\n",
                censored->at("runs").get<long long>(), censored->at("from").get<double>());
-  return text + "floor: standard deviation of the numerical noise; a stdev near it says nothing about the soil\n";
+  return text + "noise: standard deviation of the numerical noise; a stdev near it says nothing about the soil\n";
 }
 
 std::string text_histogram(const Json& quantity, int width) {

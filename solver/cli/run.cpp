@@ -160,7 +160,8 @@ void add_run(CLI::App& app, Action& action) {
   verb->add_flag("--json", options->json, "Print result.json on stdout");
   set_footer(*verb, {exit_text::bad_case, exit_text::diverged, exit_text::io, exit_text::stopped},
              {"run slope.json --out run", "run slope.json --realization 7 --seed 42 --out run --figures"});
-  verb->add_option("--perturbation", options->perturbation, "relative change of tan(phi), for noise-floor replicates")
+  verb->add_option("--perturbation", options->perturbation,
+                   "relative change of tan(phi), for replicates that measure the numerical noise")
       ->group("");
   verb->add_flag("--study-worker", options->study_worker, "quiet, and dies with its parent")->group("");
   verb->callback([options, &action] { action = [options] { return run(*options); }; });

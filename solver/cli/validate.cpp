@@ -63,7 +63,7 @@ Json to_json(const std::vector<Fault>& faults) {
 
 void print_json(const Json& value) { std::cout << value.dump(2, ' ', false, Json::error_handler_t::replace) << "\n"; }
 
-const char* way(const RunOutAxis& axis) { return axis.to == SlidesTo::right ? "right" : "left"; }
+const char* direction_of(const RunOutAxis& axis) { return axis.to == SlidesTo::right ? "right" : "left"; }
 
 Json end_json(bool wall, Vec2 end, double wall_top) {
   Json out = {{"kind", wall ? "wall" : "open"}, {"x_m", end.x}, {"y_m", end.y}};
@@ -90,7 +90,7 @@ Json slide_json(const GroundReport& r, const Model& model) {
           {"y_m", {r.slide.lo.y, r.slide.hi.y}},
           {"thickness_m", r.thickness},
           {"thickness_spacings", r.thickness / model.dx},
-          {"slides_to", way(model.terrain.run_out)},
+          {"slides_to", direction_of(model.terrain.run_out)},
           {"measured_from_m", model.terrain.run_out.from + model.terrain.origin.x}};
 }
 
@@ -142,10 +142,10 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
   for (const std::string& file : loaded.files) std::printf("file               %s\n", file.c_str());
   print_ground(report_ground(loaded), loaded.value.model);
   std::printf("particles          %zu soil + %zu wall\n", d.soil, d.wall);
-  std::printf("mass               %.0f kg/m, %+.2f %% of the outlines'\n", d.mass.filled,
+  std::printf("mass               %.0f kg/m, %+.2f %% against density x area of the outlines\n", d.mass.filled,
               std::round(1e4 * (d.mass.filled / d.mass.outline - 1.0)) / 100.0 + 0.0);
   const RunOutAxis& axis = loaded.value.model.terrain.run_out;
-  std::printf("slides to          the %s; run-outs from x = %.10g m\n", way(axis),
+  std::printf("slides to          the %s; run-outs from x = %.10g m\n", direction_of(axis),
               axis.from + loaded.value.model.terrain.origin.x);
   std::printf("time step          %.3g s%s\n", d.step,
               loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");

@@ -55,7 +55,7 @@ class Executor {
   virtual bool outlives_this_process() const = 0;
 };
 
-/// Runs as processes of this machine, at most `places` at a time. The destructor kills all of them.
-std::unique_ptr<Executor> make_local_executor(int places);
+/// Runs as processes of this machine, at most `most_workers` at a time. The destructor kills all of them.
+std::unique_ptr<Executor> make_local_executor(int most_workers);
 
 }  // namespace talus::executor

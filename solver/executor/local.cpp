@@ -15,9 +15,9 @@ using Clock = std::chrono::steady_clock;
 
 class LocalExecutor final : public Executor {
  public:
-  explicit LocalExecutor(int places) : places_(static_cast<std::size_t>(places)) {}
+  explicit LocalExecutor(int most_workers) : most_workers_(static_cast<std::size_t>(most_workers)) {}
 
-  bool has_room() const override { return workers_.size() < places_; }
+  bool has_room() const override { return workers_.size() < most_workers_; }
 
   RunId start(const Run& run) override {
     const bool resume = fs::exists(run.directory / "checkpoint.h5");
@@ -64,13 +64,15 @@ class LocalExecutor final : public Executor {
     bool timed_out = false;
     Process process;
   };
-  std::size_t places_;
+  std::size_t most_workers_;
   RunId last_ = 0;
   std::list<Worker> workers_;
 };
 
 }  // namespace
 
-std::unique_ptr<Executor> make_local_executor(int places) { return std::make_unique<LocalExecutor>(places); }
+std::unique_ptr<Executor> make_local_executor(int most_workers) {
+  return std::make_unique<LocalExecutor>(most_workers);
+}
 
 }  // namespace talus::executor

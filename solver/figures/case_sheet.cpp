@@ -10,7 +10,7 @@
 namespace talus::figures {
 namespace {
 
-constexpr std::array soils{"#C9B79C", "#9DB7C9", "#B5C99D", "#C9A0B4", "#D9CF8F", "#A9A9C9"};
+constexpr std::array soils{slide_colour, "#9DB7C9", "#B5C99D", "#C9A0B4", "#D9CF8F", "#A9A9C9"};
 
 const char* colour_of(int material) { return soils[static_cast<std::size_t>(material) % soils.size()]; }
 
@@ -34,46 +34,15 @@ struct CaseDrawing {
   }
 };
 
-void draw_rock(CaseDrawing& d, const Polyline& fitted, const Box& view) {
-  if (fitted.closed) return;
-  std::vector<Vec2> rock = fitted.vertices;
-  rock.insert(rock.end(), {{rock.back().x, view.lo.y}, {rock.front().x, view.lo.y}});
-  d.sheet.script.data("rock", rock);
-  d.add(std::string("$rock using 1:2 with filledcurves closed fillcolor rgb '") + ground + "'");
-}
-
 void draw_slide(CaseDrawing& d, const Model& model) {
   std::vector<int> named;
   for (std::size_t k = 0; k < model.slide.size(); ++k) {
     const SlidePart& part = model.slide[k];
-    const std::string name = "slide" + std::to_string(k);
-    d.sheet.script.data(name, part.outline);
     const bool first = std::ranges::find(named, part.material) == named.end();
     if (first) named.push_back(part.material);
-    d.add("$" + name + " using 1:2 with filledcurves closed fillcolor rgb '" + colour_of(part.material) +
-              "' fillstyle solid border rgb '#8A7556'",
+    d.add(slide_element(d.sheet.script, "slide" + std::to_string(k), part.outline, colour_of(part.material)),
           first ? std::string_view(model.materials[static_cast<std::size_t>(part.material)].name) : "");
   }
-}
-
-std::vector<Vec2> as_ring(const Polyline& line) {
-  std::vector<Vec2> vertices = line.vertices;
-  if (line.closed) vertices.push_back(vertices.front());
-  return vertices;
-}
-
-void draw_ground(CaseDrawing& d, const Polyline& given, const Polyline& fitted, double metre) {
-  std::vector<std::array<double, 4>> strokes;
-  for (const Stroke& s : hatching(as_ring(fitted), 9 / metre, 8 / metre))
-    strokes.push_back({s.from.x, s.from.y, s.along.x, s.along.y});
-  d.sheet.script.data("hatch", strokes).data("fitted", as_ring(fitted));
-  d.add(std::string("$hatch using 1:2:3:4 with vectors nohead linewidth 0.6 linecolor rgb '") + faint + "'");
-  const bool changed = !(given == fitted);
-  if (changed) {
-    d.sheet.script.data("given", as_ring(given));
-    d.add(line("given", vermillion, 3.0), "ground as given");
-  }
-  d.add(line("fitted", ink, changed ? 1.2 : 2.2), changed ? "ground as fitted to the spacing" : "ground");
 }
 
 void draw_walls(CaseDrawing& d, const Model& model) {
@@ -120,10 +89,17 @@ Sheet case_sheet(const LoadedCase& loaded, const GroundReport& report, const Sta
                " left center horizontal Left reverse samplen 2 noautotitle font 'sans-serif,10' textcolor rgb '", ink,
                "'");
   CaseDrawing drawing{sheet, {}};
-  draw_rock(drawing, fitted, view);
+  const bool changed = !(given == fitted);
+  const GroundElements bed = ground_elements(sheet.script, fitted, view, layout.metre, "", changed ? 1.2 : 2.2);
+  for (const std::string& element : bed.behind) drawing.add(element);
   draw_slide(drawing, model);
   if (walls) draw_walls(drawing, model);
-  draw_ground(drawing, given, fitted, layout.metre);
+  if (changed) {
+    sheet.script.data("given", visible_part(given, view.lo.x, view.hi.x));
+    drawing.add(line("given", vermillion, 3.0), "ground as given");
+  }
+  drawing.add(bed.front.front());
+  drawing.add(bed.front.back(), changed ? "ground as fitted to the spacing" : "ground");
   mark_open_ends(drawing, model.terrain);
   sheet.script.plot(drawing.elements);
   return sheet;

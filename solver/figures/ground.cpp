@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "figures/colour.hpp"
-#include "support/text.hpp"
 
 namespace talus::figures {
 namespace {
@@ -27,19 +26,11 @@ std::vector<Vec2> clipped(const std::vector<Vec2>& line, double lo, double hi) {
   return out;
 }
 
-std::vector<Vec2> boundary(const Terrain& terrain, double lo, double hi) {
-  if (terrain.bed.empty()) return {};
-  if (terrain.closed) {
-    std::vector<Vec2> ring = terrain.bed;
-    ring.push_back(ring.front());
-    return ring;
-  }
-  std::vector<Vec2> line = clipped(terrain.bed, lo, hi);
-  const Vec2 first = terrain.bed.front();
-  const Vec2 last = terrain.bed.back();
-  if (terrain.left_wall && first.x >= lo) line.insert(line.begin(), {first.x, std::max(first.y, terrain.wall_top)});
-  if (terrain.right_wall && last.x <= hi) line.push_back({last.x, std::max(last.y, terrain.wall_top)});
-  return line;
+std::vector<Vec2> visible_part(const Polyline& line, double lo, double hi) {
+  if (!line.closed) return clipped(line.vertices, lo, hi);
+  std::vector<Vec2> ring = line.vertices;
+  ring.push_back(ring.front());
+  return ring;
 }
 
 std::vector<Stroke> hatching(const std::vector<Vec2>& line, double spacing, double length) {
@@ -58,29 +49,31 @@ std::vector<Stroke> hatching(const std::vector<Vec2>& line, double spacing, doub
   return strokes;
 }
 
-GroundElements ground_elements(Script& script, const Terrain& terrain, const Box& view, double metre,
-                               const std::string& tag) {
-  const std::vector<Vec2> line_of_ground = boundary(terrain, view.lo.x, view.hi.x);
-  if (line_of_ground.size() < 2) return {};
+GroundElements ground_elements(Script& script, const Polyline& bed, const Box& view, double metre,
+                               const std::string& tag, double width) {
+  const std::vector<Vec2> surface = visible_part(bed, view.lo.x, view.hi.x);
+  if (surface.size() < 2) return {};
   GroundElements elements;
-  if (!terrain.closed) {
-    std::vector<Vec2> rock = clipped(terrain.bed, view.lo.x, view.hi.x);
+  if (!bed.closed) {
+    std::vector<Vec2> rock = surface;
     rock.insert(rock.end(), {{rock.back().x, view.lo.y}, {rock.front().x, view.lo.y}});
-    script.data("fill" + tag, rock);
-    elements.behind.push_back("$fill" + tag + " using 1:2 with filledcurves closed fillcolor rgb '" + ground + "'");
+    script.data("rock" + tag, rock);
+    elements.behind.push_back("$rock" + tag + " using 1:2 with filledcurves closed fillcolor rgb '" + ground + "'");
   }
-  std::vector<std::array<double, 4>> rows;
-  for (const Stroke& s : hatching(line_of_ground, 9 / metre, 8 / metre))
-    rows.push_back({s.from.x, s.from.y, s.along.x, s.along.y});
-  script.data("line" + tag, line_of_ground).data("hatch" + tag, rows);
+  std::vector<std::array<double, 4>> strokes;
+  for (const Stroke& s : hatching(surface, 9 / metre, 8 / metre))
+    strokes.push_back({s.from.x, s.from.y, s.along.x, s.along.y});
+  script.data("ground" + tag, surface).data("hatch" + tag, strokes);
   elements.front = {"$hatch" + tag + " using 1:2:3:4 with vectors nohead linewidth 0.6 linecolor rgb '" + faint + "'",
-                    line("line" + tag, ink, 2.2)};
+                    line("ground" + tag, ink, width)};
   return elements;
 }
 
-std::string axis_label(const char* name, double origin) {
-  if (origin == 0.0) return std::string(name) + " (m)";
-  return std::string(name) + (origin > 0.0 ? " - " : " + ") + to_text(std::abs(origin)) + " (m)";
+std::string slide_element(Script& script, const std::string& name, const std::vector<Vec2>& outline,
+                          const char* colour) {
+  script.data(name, outline);
+  return "$" + name + " using 1:2 with filledcurves closed fillcolor rgb '" + colour +
+         "' fillstyle solid border rgb '#8A7556'";
 }
 
 }  // namespace talus::figures

@@ -1,5 +1,5 @@
 #pragma once
-// The ground in a picture: bed line, hatching, fill.
+// The section in a picture: ground with hatching and fill, and the slide before failure.
 
 #include <vector>
 
@@ -12,8 +12,8 @@ namespace talus::figures {
 /// cut. [m]
 std::vector<Vec2> clipped(const std::vector<Vec2>& line, double lo, double hi);
 
-/// The boundary as one line with the soil on its left: end walls and bed, or the whole ring. [m]
-std::vector<Vec2> boundary(const Terrain& terrain, double lo, double hi);
+/// An open line clipped to [lo, hi], or a whole ring with its first vertex repeated. [m]
+std::vector<Vec2> visible_part(const Polyline& line, double lo, double hi);
 
 /// A short stroke behind the boundary, as geotechnical drawings mark ground.
 struct Stroke {
@@ -24,17 +24,22 @@ struct Stroke {
 /// Strokes every `spacing` along `line`, of length `length`, on its right side and leaning back by 45 degrees.
 std::vector<Stroke> hatching(const std::vector<Vec2>& line, double spacing, double length);
 
-/// Label of an axis in local coordinates: "x (m)", or "x - 2683000 (m)" where Terrain::origin is not 0.
-std::string axis_label(const char* name, double origin);
-
 /// Plot elements of the ground, and the data of them in the script.
 struct GroundElements {
   std::vector<std::string> behind;  ///< fill, to be plotted before the soil
-  std::vector<std::string> front;   ///< line and hatching, after it
+  std::vector<std::string> front;   ///< hatching and, last, the line; after the soil
 };
-/// The ground within `view`; `metre` is px per metre. Datablocks are named with `tag` so that several panels can live
-/// in one script.
-GroundElements ground_elements(Script& script, const Terrain& terrain, const Box& view, double metre,
-                               const std::string& tag);
+/// The ground within `view`.
+/// @param bed    with its end walls, as ground_line() gives it
+/// @param metre  px per metre
+/// @param tag    ends the names of the datablocks, so that several panels can live in one script
+/// @param width  of the line [px]
+GroundElements ground_elements(Script& script, const Polyline& bed, const Box& view, double metre,
+                               const std::string& tag, double width = 2.2);
+
+inline constexpr const char* slide_colour = "#C9B79C";
+/// Plot element of one outline of the slide before failure, whose data get `name`.
+std::string slide_element(Script& script, const std::string& name, const std::vector<Vec2>& outline,
+                          const char* colour = slide_colour);
 
 }  // namespace talus::figures

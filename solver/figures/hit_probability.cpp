@@ -4,6 +4,7 @@
 
 #include "figures/charts.hpp"
 #include "figures/ground.hpp"
+#include "particles/geometry.hpp"
 
 namespace talus::figures {
 namespace {
@@ -29,7 +30,7 @@ Box view(const Quantity& q, const Terrain& terrain, std::span<const SlidePart> s
   const double margin = 0.03 * box.width();
   box.lo.x -= margin;
   box.hi.x += margin;
-  for (const Vec2 p : boundary(terrain, box.lo.x, box.hi.x)) {
+  for (const Vec2 p : visible_part(ground_line(terrain), box.lo.x, box.hi.x)) {
     box.lo.y = std::min(box.lo.y, p.y);
     box.hi.y = std::max(box.hi.y, p.y);
   }
@@ -85,15 +86,10 @@ Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std
   sheet.axes(
       x, {box.lo.y, box.hi.y, nice_step(box.height(), metre * box.height(), 50), axis_label("y", terrain.origin.y)});
   sheet.place({left, edge, curve_bottom + gap, terrain_bottom});
-  const GroundElements bed = ground_elements(script, terrain, box, metre, "");
+  const GroundElements bed = ground_elements(script, ground_line(terrain), box, metre, "");
   std::vector<std::string> elements = bed.behind;
-  for (std::size_t i = 0; i < slide.size(); ++i) {
-    const std::string name = "slide" + std::to_string(i);
-    script.data(name, slide[i].outline);
-    elements.push_back("$" + name +
-                       " using 1:2 with filledcurves closed fillcolor rgb '#C9B79C' fillstyle solid border rgb "
-                       "'#8A7556'");
-  }
+  for (std::size_t i = 0; i < slide.size(); ++i)
+    elements.push_back(slide_element(script, "slide" + std::to_string(i), slide[i].outline));
   elements.insert(elements.end(), bed.front.begin(), bed.front.end());
   script.plot(elements);
   return sheet;

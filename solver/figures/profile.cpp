@@ -8,6 +8,7 @@
 #include "case/outline.hpp"
 #include "figures/ground.hpp"
 #include "figures/raster.hpp"
+#include "particles/geometry.hpp"
 
 namespace talus::figures {
 namespace {
@@ -93,7 +94,7 @@ void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRan
   d.sheet.script("set ylabel offset 0.8,0");
   const std::string caption = shot.caption.empty() ? "t = " + fixed(shot.frame->time, 2) + " s" : shot.caption;
   d.sheet.text(panel.left, panel.top - 12, caption, {.points = 11, .bold = true});
-  const GroundElements bed = ground_elements(d.sheet.script, d.terrain, d.view, d.layout.metre, tag);
+  const GroundElements bed = ground_elements(d.sheet.script, ground_line(d.terrain), d.view, d.layout.metre, tag);
   std::vector<std::string> elements = bed.behind;
   std::string bytes;
   if (shot.frame->n_soil > 0) {
@@ -135,7 +136,7 @@ Box view_of(std::span<const Frame* const> frames, const Terrain& terrain, double
     else
       box.lo.x = std::max(box.lo.x, terrain.bed.front().x - margin);
     box.lo.y = 1e300;
-    for (const Vec2 p : boundary(terrain, box.lo.x, box.hi.x)) box.lo.y = std::min(box.lo.y, p.y);
+    for (const Vec2 p : clipped(terrain.bed, box.lo.x, box.hi.x)) box.lo.y = std::min(box.lo.y, p.y);
   }
   const double height = std::max({box.height(), 0.12 * box.width(), 4 * dx});
   box.hi.y = box.lo.y + 1.1 * height;

@@ -6,6 +6,7 @@
 
 #include "support/error.hpp"
 #include "support/files.hpp"
+#include "support/text.hpp"
 
 namespace talus::figures {
 namespace {
@@ -165,6 +166,11 @@ void Sheet::save(const std::filesystem::path& path) const {
   for (std::size_t at = 0; svg && (at = picture.find(bold, at)) != std::string::npos;)
     picture.replace(at, bold.size(), "font-family=\"sans-serif\" font-weight=\"bold\"");
   write_file_atomically(path, picture);
+}
+
+std::string axis_label(const char* name, double origin) {
+  if (origin == 0.0) return std::string(name) + " (m)";
+  return std::string(name) + (origin > 0.0 ? " - " : " + ") + to_text(std::abs(origin)) + " (m)";
 }
 
 double nice_step(double range, int parts) {

@@ -95,6 +95,9 @@ struct Axis {
   std::string_view label;  ///< quantity with unit
 };
 
+/// Label of a coordinate axis: "x (m)", or "x - 2683000 (m)" where Terrain::origin is not 0.
+std::string axis_label(const char* name, double origin);
+
 enum class Align { left, centre, right };
 struct TextStyle {
   Align align = Align::left;

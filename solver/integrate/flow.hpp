@@ -15,7 +15,7 @@
 namespace talus {
 
 /// Evaluates the right-hand side and integrates it over a step. A back end keeps the rates of its last evaluation,
-/// which the leapfrog needs for the next step; when particles change places the rates must follow.
+/// which the leapfrog needs for the next step; when particles are reordered the rates must follow.
 /// Not thread-safe: one simulation owns one flow. The loops inside run on OpenMP's threads, with the same bits for any
 /// number of them.
 class Flow {
@@ -49,8 +49,8 @@ class Flow {
   virtual void rebuild_neighbour_lists(const Soil& soil, const WallParticles& walls, const ParticleCells& cells,
                                        double moved_since_sort, double skin) = 0;
 
-  /// The rates follow the soil when all particles take a new order (place k <- place order[k]), and when two change
-  /// places.
+  /// The rates follow the soil when all particles take a new order (index k <- index order[k]), and when two are
+  /// exchanged.
   virtual void permute_rates(Soil& soil, std::span<const std::uint32_t> order, std::vector<double>& scratch) = 0;
   virtual void swap_rates(Soil& soil, std::size_t i, std::size_t j) = 0;
 

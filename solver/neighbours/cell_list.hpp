@@ -1,5 +1,5 @@
 #pragma once
-// Linked-list cells (Hockney & Eastwood 1988) over points stored in cell order, so that the candidates around a place
+// Linked-list cells (Hockney & Eastwood 1988) over points stored in cell order, so that the candidates around a point
 // are a few contiguous index ranges.
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace talus {
 
-/// Cells a reach high and a quarter of it wide: a search visits three rows, each one contiguous range of places in
+/// Cells a reach high and a quarter of it wide: a search visits three rows, each one contiguous range of indices in
 /// which the points stand almost in order of x. Long ranges suit vectors, narrow cells keep them from carrying much
 /// that is too far.
 class CellList {
@@ -29,25 +29,25 @@ class CellList {
     build(std::span(x), std::span(y), reach);
   }
 
-  /// order()[k] = index before sorting of the point that must stand at place k. Apply it before searching.
+  /// order()[k] = index before sorting of the point that must stand at index k. Apply it before searching.
   std::span<const std::uint32_t> order() const { return order_; }
 
-  /// Calls visit(begin, end) for the ranges of places that may lie within `reach` of `point`, bottom row first.
+  /// Calls visit(begin, end) for the ranges of indices that may lie within `reach` of `point`, bottom row first.
   template <class Visit>
   void for_ranges(Vec2 point, Visit&& visit) const {
     const std::int64_t x = column(point.x), y = row(point.y);
     visit_cells(std::max<std::int64_t>(x - across, 0), std::min(x + across, columns_ - 1),
                 std::max<std::int64_t>(y - 1, 0), std::min(y + 1, rows_ - 1), visit);
   }
-  /// Calls visit(begin, end) for the ranges of places that cover `region` [m].
+  /// Calls visit(begin, end) for the ranges of indices that cover `region` [m].
   template <class Visit>
   void for_ranges(Box region, Visit&& visit) const {
     visit_cells(column(region.lo.x), column(region.hi.x), row(region.lo.y), row(region.hi.y), visit);
   }
 
-  /// Rows of cells; places of one row are contiguous.
+  /// Rows of cells; indices of one row are contiguous.
   std::size_t rows() const { return static_cast<std::size_t>(rows_); }
-  /// First place of row r; row_begin(rows()) is the number of points.
+  /// First index of row r; row_begin(rows()) is the number of points.
   std::uint32_t row_begin(std::size_t r) const { return starts_[r * static_cast<std::size_t>(columns_)]; }
 
   /// Smallest box around the points of the last build [m].
@@ -75,7 +75,7 @@ class CellList {
   Box box_;
   double inverse_reach_ = 1.0;
   std::int64_t columns_ = 1, rows_ = 1;
-  std::vector<std::uint32_t> starts_ = {0, 0};  ///< first place of each cell, row by row; one more at the end
+  std::vector<std::uint32_t> starts_ = {0, 0};  ///< first index of each cell, row by row; one more at the end
   std::vector<std::uint32_t> order_;
 };
 

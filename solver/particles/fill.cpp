@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/geometry.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/geometries/polygon.hpp>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
 
 #include "particles/geometry.hpp"
 #include "particles/ground.hpp"
+#include "particles/polygon.hpp"
 
 namespace talus {
 namespace {
@@ -46,12 +44,10 @@ struct Moments {
 };
 
 Moments moments(const Outline& polygon) {
-  Moments sum;
+  Moments sum{signed_area(polygon), {}};
   for (std::size_t k = 0; k < polygon.size(); ++k) {
     const Vec2 a = polygon[k], b = polygon[(k + 1) % polygon.size()];
-    const double twice = cross(a, b);
-    sum.area += 0.5 * twice;
-    sum.first += (twice / 6.0) * (a + b);
+    sum.first += (cross(a, b) / 6.0) * (a + b);
   }
   return sum;
 }
@@ -189,7 +185,7 @@ class Joined {
 std::vector<Piece> cut_outline(const std::vector<Vec2>& outline, const Box& box, double dx) {
   Outline scaled;
   for (const Vec2& v : outline) scaled.push_back((1.0 / dx) * (v - box.lo));
-  if (moments(scaled).area < 0.0) std::reverse(scaled.begin(), scaled.end());
+  if (signed_area(scaled) < 0.0) std::reverse(scaled.begin(), scaled.end());
   const auto count = [dx](double extent) { return static_cast<std::int64_t>(std::ceil(extent / dx - negligible)) + 1; };
   std::vector<Piece> pieces;
   cut_into_cells(scaled, {0, 0}, {count(box.height()), count(box.width())}, pieces);
@@ -226,17 +222,6 @@ std::vector<SoilPoint> fill_with_cut_cells(std::span<const SlidePart> slide, con
   return points;
 }
 
-namespace bg = boost::geometry;
-using Point = bg::model::d2::point_xy<double>;
-using Polygon = bg::model::polygon<Point>;
-
-Polygon to_polygon(std::span<const Vec2> outline) {
-  Polygon polygon;
-  for (const Vec2& v : outline) bg::append(polygon.outer(), Point(v.x, v.y));
-  bg::correct(polygon);
-  return polygon;
-}
-
 std::vector<SoilPoint> fill_with_lattice_points(std::span<const SlidePart> slide, const Ground& ground, double dx,
                                                 bool nodes) {
   const Box box = bounding_box(slide);
@@ -250,12 +235,12 @@ std::vector<SoilPoint> fill_with_lattice_points(std::span<const SlidePart> slide
     for (std::int64_t column = 0; column < columns; ++column) {
       const Vec2 x{box.lo.x + (static_cast<double>(column) + shift) * dx,
                    box.lo.y + (static_cast<double>(row) + shift) * dx};
-      // Lattice nodes that fall on the far edges would be lost to rounding: test a point pulled in by a hair.
+      // Lattice nodes that fall on the far edges would be lost to rounding: test a point slightly inside.
       const Vec2 probe = nodes ? Vec2{std::clamp(x.x, box.lo.x + tolerance, box.hi.x - tolerance),
                                       std::clamp(x.y, box.lo.y + tolerance, box.hi.y - tolerance)}
                                : x;
       for (std::size_t k = 0; k < slide.size(); ++k) {
-        if (!bg::covered_by(Point(probe.x, probe.y), polygons[k])) continue;
+        if (!boost::geometry::covered_by(probe, polygons[k])) continue;
         if (ground.nearest(x).distance >= 0.5 * dx - tolerance) points.push_back({x, slide[k].material});
         break;
       }
@@ -272,7 +257,7 @@ std::vector<SlidePart> mirrored(std::span<const SlidePart> slide) {
   return out;
 }
 
-/// Walked the other way, so that the soil stays on the left.
+/// In reverse order, so that the soil stays on the left.
 std::vector<Polyline> mirrored(std::span<const Polyline> lines) {
   std::vector<Polyline> out(lines.begin(), lines.end());
   for (Polyline& line : out) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "particles/ground.hpp"
+#include "particles/line_fit.hpp"
 
 namespace talus {
 namespace {
@@ -15,7 +16,7 @@ std::vector<double> crossings(std::span<const Vec2> outline, double x) {
   std::vector<double> heights;
   for (std::size_t k = 0; k < outline.size(); ++k) {
     const Vec2 a = outline[k], b = outline[(k + 1) % outline.size()];
-    if ((a.x <= x) != (b.x <= x)) heights.push_back(a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x));
+    if ((a.x <= x) != (b.x <= x)) heights.push_back(height_at(a, b, x));
   }
   std::sort(heights.begin(), heights.end());
   return heights;
@@ -23,20 +24,21 @@ std::vector<double> crossings(std::span<const Vec2> outline, double x) {
 
 }  // namespace
 
-double area(std::span<const Vec2> outline) {
+double signed_area(std::span<const Vec2> outline) {
   double twice = 0.0;
   for (std::size_t k = 0; k < outline.size(); ++k) twice += cross(outline[k], outline[(k + 1) % outline.size()]);
-  return 0.5 * std::abs(twice);
+  return 0.5 * twice;
 }
+
+double area(std::span<const Vec2> outline) { return std::abs(signed_area(outline)); }
+
+double height_at(Vec2 a, Vec2 b, double x) { return a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x); }
 
 Box bounding_box(std::span<const SlidePart> slide) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   Box box{{inf, inf}, {-inf, -inf}};
   for (const SlidePart& part : slide)
-    for (const Vec2& v : part.outline) {
-      box.lo = {std::min(box.lo.x, v.x), std::min(box.lo.y, v.y)};
-      box.hi = {std::max(box.hi.x, v.x), std::max(box.hi.y, v.y)};
-    }
+    for (const Vec2& v : part.outline) box.include(v);
   return box;
 }
 

@@ -11,8 +11,13 @@
 
 namespace talus {
 
+/// Area inside a closed outline [m2], positive when it is walked counter-clockwise.
+double signed_area(std::span<const Vec2> outline);
 /// Area inside a closed outline [m2], either orientation.
 double area(std::span<const Vec2> outline);
+
+/// Height at x of the line through a and b, which is not vertical [m].
+double height_at(Vec2 a, Vec2 b, double x);
 
 /// Smallest box around all outlines [m].
 Box bounding_box(std::span<const SlidePart> slide);

@@ -10,7 +10,7 @@ namespace talus {
 
 enum class SlidesTo { right, left };
 
-/// How run-outs are measured: along x, the way the slide goes.
+/// How run-outs are measured: along x, in the direction of the slide.
 struct RunOutAxis {
   double from = 0.0;  ///< x where they begin [m]
   SlidesTo to = SlidesTo::right;

@@ -38,26 +38,25 @@ struct EnergyBudget {
   bool operator==(const EnergyBudget&) const = default;
 };
 
-/// A term as files and figures name it.
+/// A term as files name it.
 struct EnergyTerm {
-  const char* key;    ///< column of history.csv, member of result.json
-  const char* label;  ///< in figures
+  const char* key;  ///< column of history.csv, member of result.json
   double EnergyBudget::*value;
 };
 
 inline constexpr EnergyTerm energy_terms[] = {
-    {"kinetic_J_m", "kinetic", &EnergyBudget::kinetic},
-    {"potential_J_m", "potential", &EnergyBudget::potential},
-    {"compression_J_m", "compression", &EnergyBudget::compression},
-    {"distortion_J_m", "distortion", &EnergyBudget::distortion},
-    {"friction_J_m", "friction", &EnergyBudget::friction},
-    {"viscosity_J_m", "viscosity", &EnergyBudget::viscosity},
-    {"artificial_viscosity_J_m", "artificial viscosity", &EnergyBudget::artificial_viscosity},
-    {"density_diffusion_J_m", "density diffusion", &EnergyBudget::density_diffusion},
-    {"boundaries_J_m", "boundaries", &EnergyBudget::boundaries},
-    {"contact_J_m", "ground contact", &EnergyBudget::contact},
-    {"departed_J_m", "departed", &EnergyBudget::departed},
-    {"stored_at_start_J_m", "stored at the start", &EnergyBudget::stored_at_start},
+    {"kinetic_J_m", &EnergyBudget::kinetic},
+    {"potential_J_m", &EnergyBudget::potential},
+    {"compression_J_m", &EnergyBudget::compression},
+    {"distortion_J_m", &EnergyBudget::distortion},
+    {"friction_J_m", &EnergyBudget::friction},
+    {"viscosity_J_m", &EnergyBudget::viscosity},
+    {"artificial_viscosity_J_m", &EnergyBudget::artificial_viscosity},
+    {"density_diffusion_J_m", &EnergyBudget::density_diffusion},
+    {"boundaries_J_m", &EnergyBudget::boundaries},
+    {"contact_J_m", &EnergyBudget::contact},
+    {"departed_J_m", &EnergyBudget::departed},
+    {"stored_at_start_J_m", &EnergyBudget::stored_at_start},
 };
 
 }  // namespace talus

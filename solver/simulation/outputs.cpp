@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "simulation/observables.hpp"
 #include "simulation/simulation.hpp"
@@ -78,9 +77,9 @@ double Simulation::run_on() const {
     left = std::min(left, soil_.x[i]);
     right = std::max(right, soil_.x[i]);
     if (soil_.tan_phi[i] <= 0.0) continue;
-    const double way = norm2(v) / (2.0 * norm(model_.g) * soil_.tan_phi[i]);
-    left_then = std::min(left_then, soil_.x[i] - (v.x < 0.0 ? way : 0.0));
-    right_then = std::max(right_then, soil_.x[i] + (v.x > 0.0 ? way : 0.0));
+    const double slide = norm2(v) / (2.0 * norm(model_.g) * soil_.tan_phi[i]);
+    left_then = std::min(left_then, soil_.x[i] - (v.x < 0.0 ? slide : 0.0));
+    right_then = std::max(right_then, soil_.x[i] + (v.x > 0.0 ? slide : 0.0));
   }
   return std::max({0.0, right_then - right, left - left_then});
 }
@@ -103,7 +102,7 @@ RunFacts Simulation::facts() const {
   std::vector<Vec2> starts;
   for (std::size_t id = 0; id < soil_.size(); ++id) starts.push_back(starts_[static_cast<std::int32_t>(id)]);
   RunFacts f = facts_before_run(model_, starts);
-  f.weight = std::accumulate(soil_.m.begin(), soil_.m.end(), 0.0) * norm(model_.g);
+  f.weight = total_mass(soil_) * norm(model_.g);
   f.mach = peak_speed_ / constants().c_s;
   f.density_rise = std::max(peak_density_rise_, density_rise());
   f.penetrated = contact_.lost();

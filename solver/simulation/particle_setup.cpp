@@ -10,11 +10,16 @@
 
 namespace talus {
 
+ParticleEstimate estimate_particles(const Model& model, std::span<const Polyline> walls) {
+  ParticleEstimate estimate;
+  for (const SlidePart& part : model.slide) estimate.soil_area += area(part.outline);
+  for (const Polyline& wall : walls) estimate.row_length += model.walls.layers * wall.length();
+  return estimate;
+}
+
 ParticlePlan plan_particles(const Model& model) {
-  double estimate = 0.0;
-  for (const SlidePart& part : model.slide) estimate += area(part.outline) / (model.dx * model.dx);
   const std::vector<Polyline> walls = wall_lines(model.boundaries, model.dx, model.placement);
-  for (const Polyline& wall : walls) estimate += model.walls.layers * wall.length() / model.dx;
+  const double estimate = estimate_particles(model, walls).count(model.dx);
   if (estimate > static_cast<double>(model.max_particles))
     throw ConfigError("/particle_spacing_m", "about " + std::to_string(static_cast<std::int64_t>(estimate)) +
                                                  " particles, more than the limit of " +

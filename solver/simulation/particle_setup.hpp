@@ -1,6 +1,8 @@
 #pragma once
 // From a model to particles at rest, and the constants and scales that follow from it.
 
+#include <cmath>
+#include <span>
 #include <vector>
 
 #include "integrate/time_step.hpp"
@@ -12,6 +14,21 @@
 #include "sph/flow_constants.hpp"
 
 namespace talus {
+
+/// How many particles a model takes, before it is filled.
+struct ParticleEstimate {
+  double soil_area = 0.0;   ///< [m2]
+  double row_length = 0.0;  ///< of all rows of wall particles together [m]
+
+  /// N = A/dx^2 + L/dx at a spacing dx [m].
+  double count(double dx) const { return soil_area / (dx * dx) + row_length / dx; }
+  /// The spacing with which there are N particles [m].
+  double spacing_for(double n) const {
+    return (row_length + std::sqrt(row_length * row_length + 4.0 * n * soil_area)) / (2.0 * n);
+  }
+};
+/// @param walls  as wall_lines() returns them
+ParticleEstimate estimate_particles(const Model& model, std::span<const Polyline> walls);
 
 /// Where the particles of a model start.
 struct ParticlePlan {

@@ -10,7 +10,7 @@
 
 namespace talus {
 
-/// Where the slide ended; run-outs, along x the way the slide goes. [m]
+/// Where the slide ended; run-outs along x, in the direction of the slide. [m]
 struct Measures {
   double influence_zone = 0.0;    ///< farthest soil particle, the paper's measure
   double front_connected = 0.0;   ///< farthest particle of the largest body linked by gaps of at most 1.5 dx

@@ -82,7 +82,7 @@ class Package(unittest.TestCase):
 
     def test_demo(self):
         self.shell("apt-get install -y -qq --no-install-recommends curl")
-        said = self.shell(f"export BIN=/usr/bin CASE={CASES}/illustrative.json OUT=/tmp/demo REALIZATIONS=4;"
+        said = self.shell("export BIN=/usr/bin OUT=/tmp/demo REALIZATIONS=4;"
                           " /opt/demo/deploy/demo.sh",
                           user="nobody")
         self.assertIn("/tmp/demo/figures/histogram.svg", said)

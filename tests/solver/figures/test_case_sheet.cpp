@@ -28,7 +28,7 @@ std::string script_of(const LoadedCase& loaded, bool walls = false) {
 
 TEST(CaseSheet, ShowsGroundMaterialsAndOpenEnds) {
   const std::string script = script_of(slope({{0, 5}, {10, 0}, {40, 0}}));
-  EXPECT_EQ(block(script, "fitted").size(), 3u + 1u) << "with the wall on the left";
+  EXPECT_EQ(block(script, "ground").size(), 3u + 1u) << "with the wall on the left";
   EXPECT_FALSE(contains(script, "as given")) << "nothing was changed";
   EXPECT_EQ(block(script, "open"), (std::vector<std::vector<double>>{{40, 0}}));
   EXPECT_TRUE(contains(script, "title 'clay'"));
@@ -43,7 +43,7 @@ TEST(CaseSheet, ShowsWhatFittingChanged) {
   const LoadedCase loaded = slope(bed);
   const std::string script = script_of(loaded, true);
   EXPECT_EQ(block(script, "given").size(), 122u + 1u);
-  EXPECT_LT(block(script, "fitted").size(), 10u);
+  EXPECT_LT(block(script, "ground").size(), 10u);
   EXPECT_EQ(block(script, "walls").size(), plan_particles(loaded.value.model).walls.size());
 }
 

@@ -1,12 +1,13 @@
 #include <gtest/gtest.h>
 
 #include "figures/ground.hpp"
+#include "particles/geometry.hpp"
 #include "reading.hpp"
 
 namespace talus::figures {
 namespace {
 
-const Terrain slope{.bed = {{0, 10}, {10, 0}, {40, 0}}, .wall_top = 15};
+const Terrain slope{.bed = {{0, 10}, {10, 0}, {40, 0}}, .wall_top = 15, .run_out = {}};
 
 TEST(Ground, ClippedCutsExactlyAtBothEnds) {
   const std::vector<Vec2> part = clipped(slope.bed, 4, 25);
@@ -24,19 +25,21 @@ TEST(Ground, ClippedKeepsFacesAndOverhangs) {
       << "joined along the cut where it is out of view";
 }
 
-TEST(Ground, BoundaryHasTheWallsThatStandInView) {
-  EXPECT_EQ(boundary(slope, -1, 20).front(), (Vec2{0, 15}));
-  EXPECT_EQ(boundary(slope, 1, 20).front(), (Vec2{1, 9}));
+TEST(Ground, TheWallsThatStandInViewAreVisible) {
+  const auto visible = [](const Terrain& terrain, double lo, double hi) {
+    return visible_part(ground_line(terrain), lo, hi);
+  };
+  EXPECT_EQ(visible(slope, -1, 20).front(), (Vec2{0, 15}));
+  EXPECT_EQ(visible(slope, 1, 20).front(), (Vec2{1, 9}));
   Terrain open = slope;
   open.left_wall = false;
-  EXPECT_EQ(boundary(open, -1, 20).front(), (Vec2{0, 10}));
+  EXPECT_EQ(visible(open, -1, 20).front(), (Vec2{0, 10}));
   open.right_wall = true;
-  EXPECT_EQ(boundary(open, -1, 50).back(), (Vec2{40, 15}));
+  EXPECT_EQ(visible(open, -1, 50).back(), (Vec2{40, 15}));
 }
 
 TEST(Ground, ARingIsWalkedWhole) {
-  const Terrain ring{.bed = {{0, 0}, {4, 0}, {4, 3}, {0, 3}}, .closed = true};
-  const std::vector<Vec2> line = boundary(ring, 1, 2);
+  const std::vector<Vec2> line = visible_part({{{0, 0}, {4, 0}, {4, 3}, {0, 3}}, true}, 1, 2);
   ASSERT_EQ(line.size(), 5u);
   EXPECT_EQ(line.front(), line.back());
 }
@@ -51,12 +54,6 @@ TEST(Ground, HatchingLiesBehindTheLineAtEvenSteps) {
   EXPECT_LT(strokes[0].along.x, 0);  // left of the wall
   EXPECT_LT(strokes[1].along.y, 0);  // under the bed
   for (const Stroke& s : strokes) EXPECT_NEAR(norm(s.along), 0.5, 1e-12);
-}
-
-TEST(Ground, AxesNameWhatWasTakenOffTheCoordinates) {
-  EXPECT_EQ(axis_label("x", 0.0), "x (m)");
-  EXPECT_EQ(axis_label("x", 2'683'000.0), "x - 2683000 (m)");
-  EXPECT_EQ(axis_label("y", -55.25), "y + 55.25 (m)");
 }
 
 }  // namespace

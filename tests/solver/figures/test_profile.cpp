@@ -95,7 +95,7 @@ TEST(Profile, SvgOfManyParticlesStaysSmall) {
   }
   frame.n_soil = frame.position.size();
   const std::filesystem::path path = directory.path() / "a.svg";
-  plot_one(frame, {.bed = {{0, 0}, {40, 0}}}, 0.1, Colour::friction_angle, path, {"title", "", ""});
+  plot_one(frame, {.bed = {{0, 0}, {40, 0}}, .run_out = {}}, 0.1, Colour::friction_angle, path, {"title", "", ""});
   const std::string svg = read_file(path, 1'000'000);
   EXPECT_TRUE(contains(svg, "data:image/png;base64,"));
   EXPECT_TRUE(contains(svg, "font-weight=\"bold\""));
@@ -106,7 +106,7 @@ TEST(Profile, SvgOfManyParticlesStaysSmall) {
 TEST(Profile, GnuplotHasNothingToSay) {
   const Frame frame = three_particles();
   const std::array shots{Snapshot{&frame, Colour::speed, {}}, Snapshot{&frame, Colour::friction_angle, {}}};
-  const Terrain ring{.bed = {{-1, -1}, {30, -1}, {30, 30}, {-1, 30}}, .closed = true};
+  const Terrain ring{.bed = {{-1, -1}, {30, -1}, {30, 30}, {-1, 30}}, .closed = true, .run_out = {}};
   for (const Terrain& terrain : {slope, ring}) {
     for (const bool raster : {false, true}) {
       const Sheet sheet = profile_sheet(shots, terrain, 0.5, {"t", "s", "u"}, {}, raster);

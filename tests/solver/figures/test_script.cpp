@@ -54,5 +54,11 @@ TEST(Literal, QuotesAndControlCharactersCannotEndTheString) {
   EXPECT_EQ(as_gnuplot_reads("'.system('echo broken').'"), "\u2019.system(\u2019echo broken\u2019).\u2019\n");
 }
 
+TEST(Axis, AxesNameWhatWasTakenOffTheCoordinates) {
+  EXPECT_EQ(axis_label("x", 0.0), "x (m)");
+  EXPECT_EQ(axis_label("x", 2'683'000.0), "x - 2683000 (m)");
+  EXPECT_EQ(axis_label("y", -55.25), "y + 55.25 (m)");
+}
+
 }  // namespace
 }  // namespace talus::figures

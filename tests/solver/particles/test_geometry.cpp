@@ -13,7 +13,10 @@ const std::vector<Vec2> triangle{{0, 0}, {4, 0}, {0, 3}};
 
 TEST(Geometry, AreaOfATriangleInEitherOrientation) {
   EXPECT_DOUBLE_EQ(area(triangle), 0.5 * 4 * 3);
-  EXPECT_DOUBLE_EQ(area(std::vector<Vec2>{{0, 3}, {4, 0}, {0, 0}}), 0.5 * 4 * 3);
+  EXPECT_DOUBLE_EQ(signed_area(triangle), 0.5 * 4 * 3);
+  const std::vector<Vec2> clockwise(triangle.rbegin(), triangle.rend());
+  EXPECT_DOUBLE_EQ(area(clockwise), 0.5 * 4 * 3);
+  EXPECT_DOUBLE_EQ(signed_area(clockwise), -0.5 * 4 * 3);
 }
 
 TEST(Geometry, CoverIsTheSoilAboveAPoint) {

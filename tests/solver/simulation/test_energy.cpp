@@ -114,9 +114,10 @@ TEST(Energy, OfABallisticBlockIsKineticAndPotential) {
     const double mass = 2000 * 2.0 * 2.0, fall2 = 0.25 * (2.0 * 2.0 + 9.81 * 9.81);  // (g t)^2
     EXPECT_NEAR(e.kinetic, 0.5 * mass * fall2, 1e-6 * e.kinetic);                    // g in single precision
     EXPECT_NEAR(e.potential, -e.kinetic, 1e-6 * e.kinetic);  // starting positions are kept to 2^-30 of the extent
-    for (const EnergyTerm& term : energy_terms)
-      if (term.value != &EnergyBudget::kinetic && term.value != &EnergyBudget::potential)
-        EXPECT_NEAR(e.*term.value, 0.0, 1e-9 * e.kinetic) << term.key;
+    for (const EnergyTerm& term : energy_terms) {
+      if (term.value == &EnergyBudget::kinetic || term.value == &EnergyBudget::potential) continue;
+      EXPECT_NEAR(e.*term.value, 0.0, 1e-9 * e.kinetic) << term.key;
+    }
   }
 }
 

@@ -1,0 +1,165 @@
+// The database under the queue: full, unwritable, durable, of an earlier and of a later version.
+
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "store_fixture.hpp"
+#include "support/measures.hpp"
+
+namespace talus::service {
+namespace {
+
+using namespace test_store;
+
+TEST_F(StoreTest, AFullDatabaseIsToldAndNothingIsHalfWritten) {
+  add("one", 1);
+  SQLite::Database raw((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE);
+  // As many pages as there are: the file cannot grow. The limit is of a connection, so the store gets one of its own.
+  try {
+    Database small(directory / "queue.sqlite");
+    small.write([](SQLite::Database& db) {
+      db.exec("PRAGMA max_page_count = 1");
+      db.exec("CREATE TABLE x (a TEXT)");
+      for (int i = 0; i < 1000; ++i) db.exec("INSERT INTO x VALUES (hex(randomblob(1000)))");
+    });
+    ADD_FAILURE() << "it was written";
+  } catch (const StorageError& e) {
+    EXPECT_TRUE(e.disk_full);
+  }
+  EXPECT_FALSE(raw.tableExists("x"));
+  EXPECT_TRUE(store->job("one"));
+}
+
+TEST_F(StoreTest, AFileThatCannotBeWrittenIsToldAsSuch) {
+  Database database(directory / "queue.sqlite");
+  database.write([](SQLite::Database& db) { db.exec("PRAGMA query_only = ON"); });
+  try {
+    database.write([](SQLite::Database& db) { db.exec("CREATE TABLE x (a TEXT)"); });
+    ADD_FAILURE() << "it was written";
+  } catch (const StorageError& e) {
+    EXPECT_FALSE(e.disk_full);
+    EXPECT_STREQ(e.what(), "the queue cannot be written: attempt to write a readonly database");
+  }
+}
+
+TEST_F(StoreTest, WhatIsCommittedIsOnTheDisk) {
+  Database database(directory / "queue.sqlite");
+  database.write([](SQLite::Database& db) {
+    EXPECT_EQ(db.execAndGet("PRAGMA journal_mode").getString(), "wal");
+    EXPECT_EQ(db.execAndGet("PRAGMA synchronous").getInt(), 2);  // FULL
+    EXPECT_EQ(db.execAndGet("PRAGMA foreign_keys").getInt(), 1);
+  });
+}
+
+TEST_F(StoreTest, ADatabaseFromBeforeAMeasureGetsItsColumn) {
+  add("one", 1);
+  const Claim claim = *store->claim();
+  ASSERT_TRUE(store->accept(claim, result(7.5)));
+  store.reset();
+  SQLite::Database((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE)
+      .exec("DROP INDEX runs_measures; ALTER TABLE runs DROP COLUMN front_mass_999_m");
+  store = open();
+  const auto run = store->run(claim.study, claim.key);
+  ASSERT_TRUE(run && run->result);
+  EXPECT_EQ(run->result->measures.influence_zone, 7.5);
+  EXPECT_TRUE(std::isnan(run->result->measures.front_mass_999));
+  EXPECT_TRUE(store->measure_sample(job("one"), *find_measure("front_mass_999_m"), {}).values.empty());
+  EXPECT_EQ(store->measure_sample(job("one"), *find_measure("influence_zone_m"), {}).values, std::vector<double>{7.5});
+  EXPECT_EQ(table_of(*store, claim.study), std::vector<std::string>{"0,done,7.5,1,2,,4,25,0.9,9,0.5,d,,sound,,0\n"});
+}
+
+/// The tables of version 2, before runs had a level, with one job: realization 0 and replicate 1 are done, realization
+/// 1 has failed, 2 is leased and 3 waits.
+constexpr const char* version_2 = R"sql(
+CREATE TABLE jobs (
+  number INTEGER PRIMARY KEY AUTOINCREMENT, id TEXT NOT NULL UNIQUE, process TEXT NOT NULL, subject TEXT NOT NULL,
+  title TEXT NOT NULL, inputs TEXT NOT NULL,
+  state TEXT NOT NULL CHECK (state IN ('accepted', 'running', 'successful', 'failed', 'dismissed')),
+  message TEXT NOT NULL DEFAULT '', seed INTEGER NOT NULL, planned INTEGER NOT NULL CHECK (planned >= 0),
+  floor INTEGER NOT NULL CHECK (floor >= 0), max_failed_share REAL NOT NULL, may_stop_early INTEGER NOT NULL,
+  case_hash TEXT NOT NULL, particles REAL NOT NULL, steps REAL NOT NULL, created INTEGER NOT NULL,
+  updated INTEGER NOT NULL, started INTEGER, finished INTEGER, done INTEGER NOT NULL DEFAULT 0,
+  failed INTEGER NOT NULL DEFAULT 0, floor_made INTEGER NOT NULL DEFAULT 0, version INTEGER NOT NULL DEFAULT 1,
+  served INTEGER NOT NULL DEFAULT 0) STRICT;
+CREATE INDEX jobs_by_state ON jobs (state, number);
+CREATE TABLE runs (
+  job INTEGER NOT NULL REFERENCES jobs (number) ON DELETE CASCADE, floor INTEGER NOT NULL CHECK (floor IN (0, 1)),
+  idx INTEGER NOT NULL CHECK (idx >= 0), rank INTEGER NOT NULL,
+  state TEXT NOT NULL DEFAULT 'queued' CHECK (state IN ('queued', 'leased', 'done', 'failed')),
+  attempt INTEGER NOT NULL DEFAULT 0, crashes INTEGER NOT NULL DEFAULT 0, lease_until INTEGER NOT NULL DEFAULT 0,
+  influence_zone_m REAL, front_connected_m REAL, front_mass_99_m REAL, front_mass_999_m REAL, centre_of_mass_x_m REAL,
+  mean_friction_angle_deg REAL, steps INTEGER, wall_clock_s REAL, digest TEXT, reason TEXT, exit_code INTEGER,
+  signal INTEGER, log_tail TEXT, captured_variance REAL, PRIMARY KEY (job, floor, idx)) STRICT, WITHOUT ROWID;
+CREATE INDEX runs_queued ON runs (job, rank) WHERE state = 'queued';
+CREATE INDEX runs_leased ON runs (job) WHERE state = 'leased';
+CREATE INDEX runs_measures ON runs (job, floor, idx, state, influence_zone_m, front_connected_m, front_mass_99_m,
+                                    front_mass_999_m, centre_of_mass_x_m) WHERE state = 'done';
+CREATE TABLE remembered (
+  subject TEXT NOT NULL, key TEXT NOT NULL, body_hash TEXT NOT NULL, status INTEGER NOT NULL, location TEXT NOT NULL,
+  body TEXT NOT NULL, created INTEGER NOT NULL, PRIMARY KEY (subject, key)) STRICT, WITHOUT ROWID;
+PRAGMA user_version = 2;
+INSERT INTO jobs (id, process, subject, title, inputs, state, seed, planned, floor, max_failed_share, may_stop_early,
+                  case_hash, particles, steps, created, updated, started, done, failed, floor_made)
+  VALUES ('old', 'influence-zone', 'a', 't', '{}', 'running', 7, 4, 1, 0.5, 0, 'h', 10, 20, 1, 2, 3, 1, 1, 1);
+INSERT INTO runs (job, floor, idx, rank, state, attempt, influence_zone_m, front_connected_m, front_mass_99_m,
+                  front_mass_999_m, centre_of_mass_x_m, mean_friction_angle_deg, captured_variance, steps, wall_clock_s,
+                  digest)
+  VALUES (1, 0, 0, 0, 'done', 1, 7.5, 1, 2, 3, 4, 25, NULL, 9, 0.5, 'd'),
+         (1, 1, 1, 1, 'done', 1, 7.25, 1, 2, 3, 4, 25, 0.9, 9, 0.5, 'e');
+INSERT INTO runs (job, floor, idx, rank, state, attempt, crashes, reason, exit_code, log_tail)
+  VALUES (1, 0, 1, 2, 'failed', 2, 1, 'diverged', 4, 'tail');
+INSERT INTO runs (job, floor, idx, rank, state, attempt, lease_until)
+  VALUES (1, 0, 2, 3, 'leased', 1, 9000000), (1, 0, 3, 4, 'queued', 0, 0);
+INSERT INTO remembered VALUES ('a', 'k', 'h', 201, '/old', 'b', 1);
+)sql";
+
+TEST_F(StoreTest, ADatabaseFromBeforeLevelsIsMigrated) {
+  store.reset();
+  for (const char* suffix : {"", "-wal", "-shm"})
+    std::filesystem::remove(directory / (std::string("queue.sqlite") + suffix));
+  SQLite::Database((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(version_2);
+  store = open();
+  const Job old = job("old");
+  EXPECT_EQ(old.replicates, 1);
+  EXPECT_EQ(old.replicates_ended, 1);
+  EXPECT_EQ(old.done, 1);
+  EXPECT_EQ(store->stored_response("a", "k")->location, "/old");
+  EXPECT_EQ(store->measure_sample(old, measure_table[0], {}).values, std::vector<double>{7.5});
+  EXPECT_EQ(store->measure_sample(old, measure_table[0], {}).noise, (std::vector<double>{7.5, 7.25}));
+  EXPECT_EQ(table_of(*store, old.number), (std::vector<std::string>{"0,done,7.5,1,2,3,4,25,0.9,9,0.5,d,,,,\n",
+                                                                    "1,failed,,,,,,,,,,,\"diverged\",,,\n"}));
+  EXPECT_EQ(old.quality, (QualityCounts{.not_assessed = 1}));
+  const service::Run failed = *store->run(old.number, realization(1));
+  EXPECT_EQ(failed.key.level, 0);
+  EXPECT_EQ(failed.failure->exit_code, 4);
+  EXPECT_EQ(store->claim()->key, realization(3));
+  EXPECT_EQ(store->requeue_all(), 2);
+  const Claim again = *store->claim();
+  EXPECT_EQ(again.key, realization(2));
+  EXPECT_EQ(again.attempt, 2);
+  SQLite::Database raw((directory / "queue.sqlite").string());
+  EXPECT_FALSE(SQLite::Statement(raw, "PRAGMA foreign_key_check(runs)").executeStep());
+}
+
+TEST_F(StoreTest, TheIndexCoversTheHistogram) {
+  SQLite::Database raw((directory / "queue.sqlite").string());
+  SQLite::Statement plan(raw,
+                         "EXPLAIN QUERY PLAN SELECT influence_zone_m FROM runs INDEXED BY runs_measures "
+                         "WHERE job = 1 AND level = 0 AND state = 'done' AND influence_zone_m IS NOT NULL "
+                         "AND kind = 0 ORDER BY idx");
+  ASSERT_TRUE(plan.executeStep());
+  EXPECT_EQ(plan.getColumn("detail").getString(),
+            "SEARCH runs USING COVERING INDEX runs_measures (job=? AND level=? AND kind=?)");
+  EXPECT_FALSE(plan.executeStep());  // no sort
+}
+
+TEST_F(StoreTest, ANewerDatabaseIsRefused) {
+  SQLite::Database((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 99");
+  EXPECT_THROW(open(), StorageError);
+}
+
+}  // namespace
+}  // namespace talus::service
