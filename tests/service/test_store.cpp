@@ -432,6 +432,22 @@ std::vector<std::string> table_of(Store& store, std::int64_t job) {
   return rows;
 }
 
+TEST_F(StoreTest, EachMeasureHasItsOwnLowerBounds) {
+  add("one", 3);
+  Record cut = result(31);
+  cut.lower_bounds = "influence_zone_m front_mass_999_m";
+  for (const Record& record : {result(20), cut, result(25)}) ASSERT_TRUE(store->accept(*store->claim(), record));
+  for (const std::optional<double>& stop : {std::optional<double>(), std::optional(1e-9)}) {
+    const auto censored = [&](const char* key) {
+      return store->measure_sample(job("one"), *find_measure(key), stop).censored;
+    };
+    EXPECT_EQ(censored("influence_zone_m"), std::vector<double>{31});
+    EXPECT_EQ(censored("front_mass_999_m"), std::vector<double>{3});
+    EXPECT_TRUE(censored("front_mass_99_m").empty()) << "whose key is not part of another";
+    EXPECT_TRUE(censored("centre_of_mass_x_m").empty());
+  }
+}
+
 TEST_F(StoreTest, ADatabaseFromBeforeAMeasureGetsItsColumn) {
   add("one", 1);
   const Claim claim = *store->claim();
@@ -446,7 +462,7 @@ TEST_F(StoreTest, ADatabaseFromBeforeAMeasureGetsItsColumn) {
   EXPECT_TRUE(std::isnan(run->result->measures.front_mass_999));
   EXPECT_TRUE(store->measure_sample(job("one"), *find_measure("front_mass_999_m"), {}).values.empty());
   EXPECT_EQ(store->measure_sample(job("one"), *find_measure("influence_zone_m"), {}).values, std::vector<double>{7.5});
-  EXPECT_EQ(table_of(*store, claim.study), std::vector<std::string>{"0,done,7.5,1,2,,4,25,0.9,9,0.5,d,,sound,,0\n"});
+  EXPECT_EQ(table_of(*store, claim.study), std::vector<std::string>{"0,done,7.5,1,2,,4,25,0.9,9,0.5,d,,sound,,,0\n"});
 }
 
 /// The tables of version 2, before runs had a level, with one job: realization 0 and replicate 1 are done, realization
@@ -507,8 +523,8 @@ TEST_F(StoreTest, ADatabaseFromBeforeLevelsIsMigrated) {
   EXPECT_EQ(store->stored_response("a", "k")->location, "/old");
   EXPECT_EQ(store->measure_sample(old, measure_table[0], {}).values, std::vector<double>{7.5});
   EXPECT_EQ(store->measure_sample(old, measure_table[0], {}).noise, (std::vector<double>{7.5, 7.25}));
-  EXPECT_EQ(table_of(*store, old.number), (std::vector<std::string>{"0,done,7.5,1,2,3,4,25,0.9,9,0.5,d,,,,\n",
-                                                                    "1,failed,,,,,,,,,,,\"diverged\",,,\n"}));
+  EXPECT_EQ(table_of(*store, old.number), (std::vector<std::string>{"0,done,7.5,1,2,3,4,25,0.9,9,0.5,d,,,,,\n",
+                                                                    "1,failed,,,,,,,,,,,\"diverged\",,,,\n"}));
   EXPECT_EQ(old.quality, (QualityCounts{.not_assessed = 1}));
   const service::Run failed = *store->run(old.number, realization(1));
   EXPECT_EQ(failed.key.level, 0);

@@ -301,7 +301,7 @@ class Run(Directory):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertRegex(done.stderr, r"continues from t = \d")
             result = load(out / "result.json")
-            for key in ("digest", "steps", "evaluations", "influence_zone_m", "max_speed_m_s"):
+            for key in ("digest", "steps", "evaluations", "influence_zone_m", "max_speed_m_s", "energy", "quality"):
                 self.assertEqual(result[key], whole[key], key)
             with h5py.File(out / "snapshots.vtkhdf") as a, h5py.File(self.dir / "whole/snapshots.vtkhdf") as b:
                 self.assertEqual(a["VTKHDF/Steps/Values"][:].tolist(), b["VTKHDF/Steps/Values"][:].tolist())
@@ -338,7 +338,7 @@ class Run(Directory):
     def test_a_run_at_rest_has_nothing_to_continue(self):
         rest = ["--set", "time.stop_at_rest=true", "--set", "particle_spacing_m=1", "--set", "time.end_s=60"]
         first = self.run_ok("a", *rest)
-        self.assertTrue(first["at_rest"])
+        self.assertEqual((first["at_rest"], first["ending"]), (True, "at_rest"))
         done = talus("run", SLOPE, *COARSE, *rest[:-1], "time.end_s=80", "--out", self.dir / "a", "--resume")
         self.assertEqual(done.returncode, 5)
         self.assertIn("came to rest before its end, t = 60 s", done.stderr)
