@@ -57,6 +57,7 @@ class Run(Directory):
     def test_a_sound_run_says_nothing(self):
         quality, lines = self.verdict("particle_spacing_m=0.8")
         self.assertEqual(quality, {"verdict": "sound", "reasons": []})
+        self.assertTrue(self.result["at_rest"])
         self.assertEqual(lines[0], "distances from x = 0 m to the right")
         self.assertEqual(self.stderr, "")
 
@@ -87,6 +88,12 @@ class Run(Directory):
     def test_a_run_that_ends_too_early_is_doubtful(self):
         quality = self.assert_says("still_moving", "doubtful", "particle_spacing_m=0.8", "time.end_s=2")
         self.assertIn("when the run ended at t = 2 s", quality["reasons"][0]["message"])
+        self.assertFalse(self.result["at_rest"])
+
+    def test_a_loose_rule_of_rest_ends_a_run_at_rest_that_is_doubtful(self):
+        rule = 'time.stop_at_rest={"speed_m_s": 2.5, "hold_s": 0.1}'
+        self.assert_says("still_moving", "doubtful", "particle_spacing_m=0.8", rule)
+        self.assertEqual((self.result["ending"], self.result["at_rest"]), ("at_rest", True))
 
     def test_a_bed_that_is_too_short_is_doubtful(self):
         quality = self.assert_says("left_terrain", "doubtful", "particle_spacing_m=0.8", "terrain.bed_m.2.0=28")
