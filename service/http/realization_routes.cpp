@@ -69,6 +69,9 @@ Json brief(const Run& run, const Exchange& exchange, const Job& job) {
   if (run.result) {
     for (const Measure& measure : measure_table) json["measures"][measure.key] = run.result->measures.*measure.member;
     json["digest"] = run.result->digest;
+    json["lower_bounds"] = Json::array();
+    for (const Measure& measure : measure_table)
+      if (run.result->is_lower_bound(measure)) json["lower_bounds"].push_back(measure.key);
   }
   if (run.failure) json["reason"] = run.failure->reason;
   if (run.result || run.failure) {

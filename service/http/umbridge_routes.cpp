@@ -106,8 +106,8 @@ Json evaluate(const Exchange& exchange, const Json& body, const Json& model) {
   return {{"output", Json::array({front})}};
 }
 
-Answer error_answer(const ProtocolError& e) {
-  return json_answer({{"error", {{"type", e.type}, {"message", e.message}}}}, 400);
+Answer error_answer(const ProtocolError& e, int status = 400) {
+  return json_answer({{"error", {{"type", e.type}, {"message", e.message}}}}, status);
 }
 
 using Feature = Json (*)(const Exchange& exchange, const Json& body, const Json& document);
@@ -120,6 +120,7 @@ Answer answer_of(Exchange& exchange) try {
 } catch (const ProtocolError& e) {
   return error_answer(e);
 } catch (const Refusal& e) {
+  if (e.reason == reason::internal) return error_answer({"InvalidOutput", e.what()}, 500);
   if (e.reason != reason::bad_request && e.reason != reason::quota) throw;
   std::string message = e.what();
   for (const Fault& fault : e.faults)

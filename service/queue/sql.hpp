@@ -119,12 +119,13 @@ void visit_runs(SQLite::Database& db, Take take, const std::string& condition, c
   std::string numbers;
   const Record any;
   visit_numbers(any, [&](const char* key, const char*, auto) { numbers += key + std::string(", "); });
-  SQLite::Statement query = statement(db,
-                                      "SELECT job, level, kind, idx, state, attempt, crashes, " + numbers +
-                                          "digest, verdict, verdict_reasons, reason, exit_code, signal, log_tail "
-                                          "FROM runs WHERE " +
-                                          condition,
-                                      values...);
+  SQLite::Statement query =
+      statement(db,
+                "SELECT job, level, kind, idx, state, attempt, crashes, " + numbers +
+                    "digest, verdict, verdict_reasons, lower_bounds, reason, exit_code, signal, log_tail "
+                    "FROM runs WHERE " +
+                    condition,
+                values...);
   while (query.executeStep()) {
     Run run;
     Record result{.done = true};
@@ -133,8 +134,8 @@ void visit_runs(SQLite::Database& db, Take take, const std::string& condition, c
     row >> run.job >> run.key >> run.state >> run.attempt >> run.crashes;
     result.index = run.key.index;
     visit_numbers(result, [&](const char*, const char*, auto& number) { row >> number; });
-    row >> result.digest >> result.verdict >> result.objections >> failure.reason >> failure.exit_code >>
-        failure.signal >> failure.log_tail;
+    row >> result.digest >> result.verdict >> result.objections >> result.lower_bounds >> failure.reason >>
+        failure.exit_code >> failure.signal >> failure.log_tail;
     if (run.state == RunState::done) run.result = std::move(result);
     if (run.state == RunState::failed) run.failure = std::move(failure);
     take(run);

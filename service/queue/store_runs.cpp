@@ -91,10 +91,11 @@ bool Store::accept(const Claim& claim, const Record& result) {
     std::string numbers;
     visit_numbers(result, [&](const char* key, const char*, auto) { numbers += key + std::string(" = ?, "); });
     SQLite::Statement update(db, "UPDATE runs SET state = 'done', " + numbers +
-                                     "digest = ?, verdict = ?, verdict_reasons = ? WHERE " + is_current_claim);
+                                     "digest = ?, verdict = ?, verdict_reasons = ?, lower_bounds = ? WHERE " +
+                                     is_current_claim);
     Binder values(update);
     visit_numbers(result, [&](const char*, const char*, auto value) { values << value; });
-    values << result.digest << result.verdict << result.objections << claim;
+    values << result.digest << result.verdict << result.objections << result.lower_bounds << claim;
     if (update.exec() != 1) return false;
     count_ended(db, claim, "done", result.verdict, clock_());
     return true;
@@ -246,11 +247,12 @@ MeasureSample Store::measure_sample(const Job& job, const Measure& measure,
     sample.noise.insert(sample.noise.end(), replicates.begin(), replicates.end());
     if (!stop_half_width) {
       sample.values = column(db, done + " AND kind = 0 ORDER BY idx", job.number);
-      if (&measure == measure_table.data())
-        sample.censored = column(db,
-                                 "SELECT influence_zone_m FROM runs WHERE job = ? AND level = 0 AND kind = 0 AND "
-                                 "state = 'done' AND left_domain > 0",
-                                 job.number);
+      sample.censored = column(db,
+                               "SELECT " + key +
+                                   " FROM runs WHERE job = ? AND level = 0 AND kind = 0 AND state = 'done' AND "
+                                   "instr(' ' || lower_bounds || ' ', ' " +
+                                   key + " ') > 0",
+                               job.number);
       return sample;
     }
     StopRule rule(stop_half_width);
@@ -258,25 +260,23 @@ MeasureSample Store::measure_sample(const Job& job, const Measure& measure,
     sample.quality = {};
     SQLite::Statement query =
         statement(db,
-                  "SELECT idx, iif(state = 'done', influence_zone_m, NULL), verdict, reason, left_domain > 0, " + key +
+                  "SELECT idx, iif(state = 'done', influence_zone_m, NULL), verdict, reason, lower_bounds, " + key +
                       " FROM runs WHERE job = ? AND level = 0 AND kind = 0 AND state IN "
                       "('done', 'failed') ORDER BY idx",
                   job.number);
     while (!rule.size() && query.executeStep()) {
       std::int64_t index = 0;
       std::optional<double> influence_zone, value;
-      std::optional<std::int64_t> left;
       std::string reason;
       Record record{.done = true};
-      Row(query) >> index >> influence_zone >> record.verdict >> reason >> left >> value;
+      Row(query) >> index >> influence_zone >> record.verdict >> reason >> record.lower_bounds >> value;
       rule.add(index, influence_zone);
       sample.quality.add(influence_zone ? record : failed_record(index, reason));
       if (!influence_zone)
         ++sample.failed;
       else if (value)
         sample.values.push_back(*value);
-      if (value && influence_zone && left.value_or(0) > 0 && &measure == measure_table.data())
-        sample.censored.push_back(*value);
+      if (value && influence_zone && record.is_lower_bound(measure)) sample.censored.push_back(*value);
     }
     sample.complete = sample.complete || rule.size();
     return sample;

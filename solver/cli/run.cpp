@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
@@ -70,17 +71,19 @@ std::string verdict_lines(const Quality& quality) {
 void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t seed) {
   std::fputs(verdict_lines(r.quality).c_str(), stdout);
   std::printf("distances from x = %.10g m to the %s\n", axis.from, axis.to == SlidesTo::right ? "right" : "left");
-  for (const Measure& measure : measure_table)
-    std::printf("%-26s%10.3f %s%s\n", ((measure.front ? "front, " : "") + std::string(measure.label)).c_str(),
-                r.measures.*measure.member, measure.unit,
-                &measure == measure_table.data() ? "   the run-out distance (influence_zone_m)" : "");
+  for (const Measure& measure : measure_table) {
+    const bool lower_bound = std::ranges::find(r.lower_bounds, measure.key) != r.lower_bounds.end();
+    char value[32];
+    std::snprintf(value, sizeof value, "%s%.3f", lower_bound ? ">=" : "", r.measures.*measure.member);
+    std::printf("%-26s%10s %s%s\n", ((measure.front ? "front, " : "") + std::string(measure.label)).c_str(), value,
+                measure.unit, &measure == measure_table.data() ? "   the run-out distance (influence_zone_m)" : "");
+  }
   std::printf("time reached              %10.3f s   in %lld steps%s\n", r.time, static_cast<long long>(r.steps),
               r.at_rest ? ", at rest" : "");
   std::printf("particles                 %10lld soil + %lld wall, %lld penetrated\n", static_cast<long long>(r.soil),
               static_cast<long long>(r.wall), static_cast<long long>(r.penetrated));
   if (r.left_domain > 0)
-    std::printf("left the terrain          %10lld particles: fronts end where the bed ends\n",
-                static_cast<long long>(r.left_domain));
+    std::printf("left the terrain          %10lld particles\n", static_cast<long long>(r.left_domain));
   if (r.field.terms > 0)
     std::printf(
         "random field              %10lld terms, %.1f %% of the variance, mean friction angle %.2f deg, seed %llu\n"

@@ -100,6 +100,18 @@ class ObjectIo {
                     pointer_ + "/" + key + "/" + std::to_string(k)),
            elements[k]);
   }
+  /// For a list that earlier versions did not write; empty without it.
+  void texts_or_none(const char* key, std::vector<std::string>& texts) {
+    texts.resize(reading_ && node_.contains(key) ? member(key).size() : texts.size());
+    if (!has(key)) return;
+    Json& all = member(key);
+    if (!reading_) all = Json(texts);
+    if (!all.is_array()) fail(key, "a list");
+    for (std::size_t k = 0; k < texts.size(); ++k) {
+      if (!all[k].is_string()) fail(key, "a list of texts");
+      texts[k] = all[k].get<std::string>();
+    }
+  }
   void optional(const char* key, std::optional<double>& value) {
     or_null(key, value, [&](double& x) { number(key, x); });
   }
@@ -193,6 +205,7 @@ void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
   root.number("final_max_speed_m_s", result.final_max_speed, 0.0);
   root.integer("penetrated", result.penetrated);
   root.integer("left_domain", result.left_domain);
+  root.texts_or_none("lower_bounds", result.lower_bounds);
   root.boolean("at_rest", result.at_rest);
   root.object_or_skip("mass_kg_m", [&](ObjectIo mass) {
     mass.number("filled", result.mass.filled, 0.0);

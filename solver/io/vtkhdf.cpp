@@ -32,7 +32,7 @@ class Reserve {
   Reserve(const fs::path& path, std::size_t particles)
       : path_(path), file_(::open(path.c_str(), O_WRONLY | O_CLOEXEC)) {
     if (!file_) throw_io_error("write", path_, errno);
-    std::size_t numbers_per_row = 0;
+    std::size_t numbers_per_row = 3;  // points of double precision take six
     for (const vtkhdf::Field& f : vtkhdf::fields) numbers_per_row += static_cast<std::size_t>(f.components);
     const std::size_t rows = particles + 2 * std::min(particles, vtkhdf::max_chunk);  // a chunk that grows may move
     constexpr std::size_t metadata = 128 * 1024;
@@ -76,6 +76,11 @@ std::vector<double> times_of(const hdf5::Id& file) {
   return hdf5::read_rows<double>(steps, "Values", 0, static_cast<std::size_t>(std::max<std::int64_t>(count, 0)));
 }
 
+/// Whether the snapshots are of a case in local coordinates.
+bool has_origin(const hdf5::Id& file) {
+  return hdf5::has_attribute(hdf5::open_group(file, "VTKHDF"), vtkhdf::origin_attributes[0]);
+}
+
 void check_lengths(std::span<const Vec2> positions, std::span<const NamedArray> arrays) {
   for (const NamedArray& a : arrays)
     if (a.values.size() != positions.size())
@@ -87,7 +92,7 @@ void check_lengths(std::span<const Vec2> positions, std::span<const NamedArray> 
 SnapshotWriter::SnapshotWriter(fs::path path, hdf5::Id file) : path_(std::move(path)), file_(std::move(file)) {}
 
 SnapshotWriter::SnapshotWriter(fs::path path, const Frame& first)
-    : path_(std::move(path)), times_{first.time}, particles_(first.position.size()) {
+    : path_(std::move(path)), times_{first.time}, particles_(first.position.size()), far_(first.origin != Vec2{}) {
   check_lengths(first);
   const hdf5::Id memory = hdf5::create_in_memory();
   vtkhdf::create_skeleton(memory, first);
@@ -105,6 +110,7 @@ SnapshotWriter SnapshotWriter::resume(fs::path path, double time) {
   const auto n = hdf5::read_array<std::int64_t>(writer.file_, "VTKHDF/NumberOfPoints");
   if (n.size() != 1 || n[0] < 1) throw IoError(path.string() + " is not a file of snapshots of Talus");
   writer.particles_ = static_cast<std::size_t>(n[0]);
+  writer.far_ = has_origin(writer.file_);
   writer.times_ = std::move(times);
   vtkhdf::commit(writer.file_, writer.times_.size());
   hdf5::flush(writer.file_);
@@ -135,7 +141,7 @@ void SnapshotWriter::close() {
 
 void SnapshotWriter::write_sidecar() const {
   write_file_atomically(fs::path(path_).replace_extension(".xdmf"),
-                        vtkhdf::xdmf_document(path_.filename().string(), particles_, times_));
+                        vtkhdf::xdmf_document(path_.filename().string(), particles_, times_, far_));
 }
 
 std::vector<double> snapshot_times(const fs::path& path) { return times_of(open_snapshots(path)); }
@@ -152,9 +158,11 @@ Frame read_frame(const fs::path& path, std::size_t index) {
   Frame frame;
   frame.time = times[index];
   frame.step = hdf5::read_rows<std::int64_t>(file, "talus/step", index, 1)[0];
-  if (const hdf5::Id grid = hdf5::open_group(file, "VTKHDF"); hdf5::has_attribute(grid, vtkhdf::origin_attributes[0]))
+  if (has_origin(file)) {
+    const hdf5::Id grid = hdf5::open_group(file, "VTKHDF");
     frame.origin = {hdf5::read_attribute<double>(grid, vtkhdf::origin_attributes[0]),
                     hdf5::read_attribute<double>(grid, vtkhdf::origin_attributes[1])};
+  }
   frame.n_soil = static_cast<std::size_t>(std::count(walls.begin(), walls.end(), 0));
   std::apply([n](auto&... array) { (array.resize(n), ...); }, vtkhdf::arrays_of(frame));
   for (const vtkhdf::Field& f : vtkhdf::fields) {
@@ -163,6 +171,10 @@ Frame read_frame(const fs::path& path, std::size_t index) {
     if (values.size() != n * components)
       throw IoError("the snapshots' array " + f.name() + " has another shape than expected");
     for (std::size_t i = 0; i < n; ++i) f.set(frame, i, &values[i * components]);
+  }
+  if (frame.origin != Vec2{}) {
+    const std::vector<double> xyz = hdf5::read_rows<double>(file, vtkhdf::points.path, index * n, n);
+    for (std::size_t i = 0; i < n; ++i) frame.position[i] = Vec2{xyz[3 * i], xyz[3 * i + 1]} - frame.origin;
   }
   return frame;
 }

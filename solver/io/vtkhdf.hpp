@@ -6,7 +6,8 @@
 // Arrays at every step of n particles (float32): Points [m], velocity [m/s], displacement [m], each (n, 3); stress (n,
 // 6) [Pa; XX YY ZZ XY YZ XZ, positive in tension]; density [kg/m3], pressure [Pa], friction_angle_deg, shear_rate
 // [1/s], each (n). Stored once (int32): is_wall, id, each (n). Points of a case
-// far from zero (Terrain::origin) are local: the attributes origin_x_m and origin_y_m of VTKHDF must be added to them.
+// far from zero (Terrain::origin) are float64, which keeps the micrometre; the attributes origin_x_m and origin_y_m of
+// VTKHDF name the origin, which is part of them.
 // Not thread-safe (HDF5).
 
 #include <cstddef>
@@ -51,6 +52,7 @@ class SnapshotWriter {
   hdf5::Id file_;
   std::vector<double> times_;  ///< of the steps in the file [s]
   std::size_t particles_ = 0;
+  bool far_ = false;  ///< the points are of double precision
 };
 
 /// Times of the steps of a file [s]. @throws IoError naming the path

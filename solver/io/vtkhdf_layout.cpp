@@ -43,6 +43,7 @@ struct Slab {
   std::size_t rows;
   int first_column;
   int columns;
+  int bytes = 4;  ///< of a number
 };
 
 std::string item(const std::string& file, const Slab& s) {
@@ -54,13 +55,20 @@ std::string item(const std::string& file, const Slab& s) {
          (s.columns > 1 ? numbers(s.rows, s.columns) : std::to_string(s.rows)) + "\"><DataItem Dimensions=\"3 " +
          (table ? "2" : "1") + "\" Format=\"XML\" NumberType=\"Int\">" + numbers(s.first_row, s.first_column) + " " +
          numbers(1, 1) + " " + numbers(s.rows, s.columns) + "</DataItem><DataItem Dimensions=\"" +
-         numbers(s.array_rows, s.array_columns) + "\" NumberType=\"" + s.number + "\" Precision=\"4\" Format=\"HDF\">" +
-         file + ":" + s.path + "</DataItem></DataItem>";
+         numbers(s.array_rows, s.array_columns) + "\" NumberType=\"" + s.number + "\" Precision=\"" +
+         std::to_string(s.bytes) + "\" Format=\"HDF\">" + file + ":" + s.path + "</DataItem></DataItem>";
 }
 
 std::string attribute(const std::string& name, bool vector, const std::string& data) {
   return "<Attribute Name=\"" + name + "\" AttributeType=\"" + (vector ? "Vector" : "Scalar") + "\" Center=\"Node\">" +
          data + "</Attribute>\n";
+}
+
+/// Single precision would lose the decimetres of a national grid.
+void append_far_points(hid_t root, const Frame& frame) {
+  std::vector<double> xyz;
+  for (const Vec2& x : frame.position) xyz.insert(xyz.end(), {x.x + frame.origin.x, x.y + frame.origin.y, 0.0});
+  hdf5::append_rows<double>(root, points.path, xyz);
 }
 
 }  // namespace
@@ -84,8 +92,8 @@ void write_grid(hid_t root, std::size_t n, std::array<std::int64_t, 2> version) 
 void create_skeleton(hid_t root, const Frame& first) {
   const std::size_t n = first.position.size();
   write_grid(root, n, temporal_version);
-  // Single precision would lose the decimetres of a national grid.
-  if (first.origin != Vec2{}) {
+  const bool far = first.origin != Vec2{};
+  if (far) {
     const hdf5::Id grid = hdf5::open_group(root, "VTKHDF");
     hdf5::write_attribute<double>(grid, origin_attributes[0], first.origin.x);
     hdf5::write_attribute<double>(grid, origin_attributes[1], first.origin.y);
@@ -93,8 +101,8 @@ void create_skeleton(hid_t root, const Frame& first) {
   for (const char* group : {"VTKHDF/PointData", "VTKHDF/Steps", "VTKHDF/Steps/PointDataOffsets", "talus"})
     hdf5::create_group(root, group);
   for (const Field& f : fields)
-    hdf5::create_rows(root, f.path, hdf5::type<float>(), static_cast<std::size_t>(f.components), std::min(n, max_chunk),
-                      Filter::compressed);
+    hdf5::create_rows(root, f.path, far && &f == &points ? hdf5::type<double>() : hdf5::type<float>(),
+                      static_cast<std::size_t>(f.components), std::min(n, max_chunk), Filter::compressed);
   std::vector<std::int32_t> numbers(n);
   std::iota(numbers.begin(), numbers.end(), 0);
   hdf5::write_array<std::int32_t>(root, "VTKHDF/PointData/id", numbers, Filter::compressed);
@@ -110,6 +118,10 @@ void append_step(hid_t root, const Frame& frame, std::size_t step) {
   const std::size_t n = frame.position.size();
   std::vector<float> buffer;
   for (const Field& f : fields) {
+    if (&f == &points && frame.origin != Vec2{}) {
+      append_far_points(root, frame);
+      continue;
+    }
     const auto components = static_cast<std::size_t>(f.components);
     buffer.resize(n * components);
     for (std::size_t i = 0; i < n; ++i) f.get(frame, i, &buffer[i * components]);
@@ -130,18 +142,19 @@ void truncate_steps(hid_t root, std::size_t steps, std::size_t n) {
   hdf5::truncate_rows(root, step_times, steps);
 }
 
-std::string xdmf_document(const std::string& file, std::size_t n, std::span<const double> times) {
+std::string xdmf_document(const std::string& file, std::size_t n, std::span<const double> times, bool far) {
   const std::size_t rows = n * times.size();
   std::string text =
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid Name=\"snapshots\" GridType=\"Collection\" "
       "CollectionType=\"Temporal\">\n";
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto whole = [&](const Field& f) {
-      return item(file, {"/" + std::string(f.path), "Float", rows, f.components, k * n, n, 0, f.components});
+      return item(file, {"/" + std::string(f.path), "Float", rows, f.components, k * n, n, 0, f.components,
+                         far && &f == &points ? 8 : 4});
     };
     text += "<Grid Name=\"step" + std::to_string(k) + "\" GridType=\"Uniform\"><Time Value=\"" + to_text(times[k]) +
             "\"/><Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + std::to_string(n) +
-            "\" NodesPerElement=\"1\"/>\n" + "<Geometry GeometryType=\"XYZ\">" + whole(fields[0]) + "</Geometry>\n";
+            "\" NodesPerElement=\"1\"/>\n" + "<Geometry GeometryType=\"XYZ\">" + whole(points) + "</Geometry>\n";
     for (const Field& f : std::span(fields).subspan(1))
       if (f.components <= 3) text += attribute(f.name(), f.components == 3, whole(f));
     const std::string point_data = "/VTKHDF/PointData/";

@@ -68,6 +68,8 @@ inline constexpr std::array<Field, 8> fields = {{
      }},
 }};
 
+inline constexpr const Field& points = fields[0];
+
 /// The arrays of a frame, all of one length.
 template <class F>
 auto arrays_of(F& f) {
@@ -79,7 +81,8 @@ inline constexpr std::array<const char*, 2> constant_fields = {"is_wall", "id"};
 
 inline constexpr std::size_t max_chunk = 65536;  ///< rows compressed together
 
-/// Attributes of VTKHDF: x and y that must be added to the points [m]; absent where both are 0.
+/// Attributes of VTKHDF: Terrain::origin [m]; absent where both are 0. With them the points are of double precision:
+/// they are in the coordinates of the case, as in every file.
 inline constexpr std::array<const char*, 2> origin_attributes{"origin_x_m", "origin_y_m"};
 
 /// Writes version, type, and the cells: one vertex for each of n points.
@@ -99,6 +102,7 @@ void truncate_steps(hid_t root, std::size_t steps, std::size_t n);
 /// @param file       name of the VTKHDF file, which lies beside the document
 /// @param particles  points at each step
 /// @param times      of the steps [s]
-std::string xdmf_document(const std::string& file, std::size_t particles, std::span<const double> times);
+/// @param far        the points are of double precision
+std::string xdmf_document(const std::string& file, std::size_t particles, std::span<const double> times, bool far);
 
 }  // namespace talus::vtkhdf

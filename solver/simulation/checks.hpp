@@ -15,6 +15,11 @@ namespace talus {
 /// The largest Courant number at which an integrator is stable [-]; measured, see README.md.
 constexpr double stable_cfl(Integrator integrator) { return integrator == Integrator::leapfrog ? 0.4 : 0.8; }
 
+/// Root-mean-square speed of a slide at rest over sqrt(|g| H), at most [-].
+inline constexpr double rest_speed = 0.01;
+/// By how many spacings the front of a slide at rest may still advance [-].
+inline constexpr double rest_run_on = 1.0;
+
 /// What the checks look at. The defaults are those of a run without fault; what is unset is not checked.
 struct RunFacts {
   EnergyBudget energy = {};                       ///< at the end

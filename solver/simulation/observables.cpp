@@ -120,6 +120,17 @@ Measures measure_fronts(const Soil& soil, const RunOutAxis& axis, double dx) {
           mass_front(soil, axis, 0.001), axis.distance(centre_of_mass(soil).x)};
 }
 
+std::vector<std::string> lower_bounds(const Soil& soil, const Terrain& terrain, const Measures& measures) {
+  const RunOutAxis& axis = terrain.run_out;
+  const double end = axis.distance((axis.to == SlidesTo::right ? terrain.bed.back() : terrain.bed.front()).x);
+  bool left = false;
+  for (std::size_t i = soil.n_active; i < soil.size(); ++i) left = left || axis.distance(soil.x[i]) >= end;
+  std::vector<std::string> keys;
+  for (const Measure& measure : measure_table)
+    if (left && (!measure.front || measures.*measure.member >= end)) keys.emplace_back(measure.key);
+  return keys;
+}
+
 std::string digest(const Soil& soil) {
   std::uint64_t hash = fnv1a64_start;
   for (const auto i : by_id(soil))

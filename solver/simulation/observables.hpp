@@ -13,6 +13,10 @@ namespace talus {
 /// Fronts and centre of mass as run-outs; dx is the particle spacing [m]. Soil must not be empty.
 Measures measure_fronts(const Soil& soil, const RunOutAxis& axis, double dx);
 
+/// Keys of the measures that are lower bounds, since soil left through the open end towards which the slide goes:
+/// fronts that reach that end, and the centre of mass.
+std::vector<std::string> lower_bounds(const Soil& soil, const Terrain& terrain, const Measures& measures);
+
 /// Run-out of the farthest soil particle [m].
 double farthest(const Soil& soil, const RunOutAxis& axis = {});
 /// sum m [kg/m].

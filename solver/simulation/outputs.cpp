@@ -84,6 +84,14 @@ double Simulation::run_on() const {
   return std::max({0.0, right_then - right, left - left_then});
 }
 
+/// Root-mean-square speed over sqrt(|g| H) [-].
+double Simulation::relative_speed() const { return rms_speed(soil_) / std::sqrt(norm(model_.g) * fall_height(model_)); }
+
+/// By the rule of the case, or by that of the verdict (`still_moving`, `front_still_moving`).
+bool Simulation::at_rest() const {
+  return rests() || (relative_speed() <= rest_speed && run_on() <= rest_run_on * model_.dx);
+}
+
 /// Particles that are nearer than a spacing to an open end of the bed, and did not start there.
 std::int64_t Simulation::at_open_end() const {
   const Terrain& terrain = model_.terrain;
@@ -113,7 +121,7 @@ RunFacts Simulation::facts() const {
     return std::ranges::any_of(values, [](double x) { return x > 0.0; });
   };
   if (any_positive(soil_.tan_phi) || any_positive(soil_.c)) {  // otherwise it never comes to rest
-    f.rms_speed = rms_speed(soil_) / std::sqrt(norm(model_.g) * fall_height(model_));
+    f.rms_speed = relative_speed();
     f.run_on = run_on();
   }
   return f;
@@ -122,6 +130,7 @@ RunFacts Simulation::facts() const {
 RunResult Simulation::result() const {
   RunResult r;
   r.measures = measure_fronts(soil_, model_.terrain.run_out, model_.dx);
+  r.lower_bounds = lower_bounds(soil_, model_.terrain, r.measures);
   r.ending = time_ >= model_.time.end ? Ending::end_time : rests() ? Ending::at_rest : Ending::interrupted;
   r.soil = static_cast<std::int64_t>(soil_.size());
   r.wall = static_cast<std::int64_t>(walls_.size());
@@ -132,7 +141,7 @@ RunResult Simulation::result() const {
   r.final_max_speed = max_speed_;
   r.penetrated = contact_.lost();
   r.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
-  r.at_rest = max_speed_ < 0.01 * std::sqrt(norm(model_.g) * fall_height(model_));
+  r.at_rest = at_rest();
   r.mass = {total_mass(soil_), mass_of(model_.slide, model_.materials)};
   r.digest = digest(soil_);
   r.backend = backend();

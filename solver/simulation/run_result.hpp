@@ -32,6 +32,7 @@ enum class Ending { end_time, at_rest, interrupted };
 /// The outcome of a run.
 struct RunResult {
   Measures measures;
+  std::vector<std::string> lower_bounds = {};  ///< keys of the measures of which soil that left makes lower bounds
   Ending ending = Ending::end_time;
   std::int64_t soil = 0;  ///< particles
   std::int64_t wall = 0;  ///< particles
@@ -44,7 +45,7 @@ struct RunResult {
   double final_max_speed = 0.0;  ///< [m/s]
   std::int64_t penetrated = 0;   ///< soil particles that were ever deep in the ground; must be 0
   std::int64_t left_domain = 0;  ///< soil particles that left through an open end
-  bool at_rest = false;          ///< final_max_speed below 1 % of sqrt(|g| H)
+  bool at_rest = false;          ///< by the rule of the case (then `ending` says so), or by that of the verdict
   SlideMass mass;
   std::string digest;             ///< 16 hex digits over the final state in order of id
   std::string backend = "plain";  ///< the loops that ran: "vectorised" or "plain"; empty: not recorded

@@ -71,7 +71,9 @@ class Simulation {
   void meet_the_ground(StepExtrema& extrema);
   void retire_departed(const StepExtrema& extrema);
   double density_rise() const;
+  double relative_speed() const;
   double run_on() const;
+  bool at_rest() const;
   std::int64_t at_open_end() const;
 
   Model model_;

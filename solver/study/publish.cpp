@@ -23,7 +23,7 @@ constexpr const char* of_replicates = "replicate";
 
 /// The columns of a table, in order. Those of version 0.1.0 stand first, later ones after them.
 std::vector<std::string> column_names(const std::string& index_name) {
-  std::vector<std::string> names{index_name, "status"}, later{"verdict", "verdict_reasons"};
+  std::vector<std::string> names{index_name, "status"}, later{"verdict", "verdict_reasons", "lower_bounds"};
   const Record any;
   visit_numbers(any, [&](const char* key, const char*, auto) { (is_later(key) ? later : names).emplace_back(key); });
   names.insert(names.end(), {"digest", "reason"});
@@ -51,7 +51,7 @@ class Columns {
       if (!at_.emplace(header[i], i).second) fail("the column " + in_quotes(header[i]) + " stands there twice");
     }
     for (const std::string& name : known)
-      if (!at_.contains(name) && !may_be_missing(name) && !name.starts_with("verdict"))
+      if (!at_.contains(name) && !may_be_missing(name) && !name.starts_with("verdict") && name != "lower_bounds")
         fail("the column " + in_quotes(name) + " is missing");
     index_ = at_.at(index_name);
   }
@@ -104,6 +104,7 @@ Record record(const std::vector<std::string>& fields, const Columns& columns, co
   });
   r.digest = text("digest");
   r.objections = text("verdict_reasons");
+  r.lower_bounds = text("lower_bounds");
   const std::string verdict = text("verdict");
   const std::optional<Verdict> known = verdict_of(verdict.empty() ? word(Verdict::not_assessed) : verdict);
   if (!known) fail("has the unknown verdict \"" + verdict + "\"");
@@ -156,7 +157,8 @@ std::string csv_line(const Record& record) {
   });
   const char* verdict = record.verdict == Verdict::not_assessed ? "" : word(record.verdict);
   return std::to_string(record.index) + (record.done ? ",done" : ",failed") + numbers + ',' + record.digest + ',' +
-         csv_quoted(record.reason) + ',' + verdict + ',' + csv_quoted(record.objections) + later + '\n';
+         csv_quoted(record.reason) + ',' + verdict + ',' + csv_quoted(record.objections) + ',' +
+         csv_quoted(record.lower_bounds) + later + '\n';
 }
 
 std::vector<Record> read_csv(const fs::path& path, const std::string& index_name) {

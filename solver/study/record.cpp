@@ -40,6 +40,10 @@ void link_or_copy(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
+bool Record::is_lower_bound(const Measure& measure) const {
+  return (" " + lower_bounds + " ").find(" " + std::string(measure.key) + " ") != std::string::npos;
+}
+
 bool is_later(std::string_view key) {
   return std::ranges::any_of(covariate_table, [&](const Covariate& of) { return of.later && of.key == key; });
 }
@@ -71,6 +75,8 @@ std::optional<Record> read_result(const fs::path& file, const RunKey& key, const
         place.at(name).get_to(value);
     });
     json.at("digest").get_to(record.digest);
+    for (const Json& key : json.value("lower_bounds", Json::array()))
+      record.lower_bounds += (record.lower_bounds.empty() ? "" : " ") + key.get<std::string>();
     const bool interrupted = json.at("ending") == "interrupted";
     const auto hash = json.at("provenance").at("case_hash").get<std::string>();
     const bool earlier = std::ranges::find(of.earlier, hash) != of.earlier.end();

@@ -26,13 +26,16 @@ struct Record {
   double mean_phi_deg = 0.0;       ///< mean friction angle over the soil particles [deg]
   double captured_variance = 0.0;  ///< [-]
   std::int64_t steps = 0;
-  double wall_clock = 0.0;   ///< [s]
-  double left_domain = 0.0;  ///< soil particles that left through an open end; NaN: not recorded
-  std::string digest = {};   ///< of the final state
-  std::string reason = {};   ///< why it failed, one line; empty if done
+  double wall_clock = 0.0;        ///< [s]
+  double left_domain = 0.0;       ///< soil particles that left through an open end; NaN: not recorded
+  std::string digest = {};        ///< of the final state
+  std::string lower_bounds = {};  ///< keys of the measures that are lower bounds, separated by blanks
+  std::string reason = {};        ///< why it failed, one line; empty if done
   Verdict verdict = Verdict::not_assessed;
   std::string objections = {};  ///< objections_text() of the result's quality
 
+  /// Whether soil that left the terrain makes a lower bound of this measure.
+  bool is_lower_bound(const Measure& measure) const;
   /// [m]; unset: it failed
   std::optional<double> influence_zone() const { return done ? std::optional(measures.influence_zone) : std::nullopt; }
 };

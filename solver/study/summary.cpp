@@ -90,11 +90,10 @@ Json notes_json(const Plan& plan) {
        "Wilson's 95 % lower bound "
        "with no failed one exceeding, hi the upper bound with all of them exceeding"},
       {"censored",
-       "runs whose soil left the terrain through an open end: their run-out of the farthest particle is a lower bound; "
-       "from: the least of them. The mean and quantiles from there on are lower bounds (at_least), and exceedance "
-       "counts "
-       "such runs as beyond every x, lo only as far as they were seen; the other measures take soil that left where it "
-       "left"},
+       "runs whose value is a lower bound, since soil left the terrain through the open end towards which the slide "
+       "goes: fronts that reach that end, and the centre of mass; from: the least of them. The mean and quantiles from "
+       "there on are lower bounds (at_least), and exceedance counts such runs as beyond every x, lo only as far as "
+       "they were seen"},
       {"noise_floor",
        "realization 0 and its replicates with tan(phi) scaled by 1 + 1e-6 k; a stdev near its noise_floor_stdev is "
        "numerics"}};
@@ -159,9 +158,10 @@ bool StudySummary::add(const Record& record) {
   }
   for (std::size_t k = 0; k < measure_table.size(); ++k) {
     const double value = record.measures.*measure_table[k].member;
-    if (!std::isnan(value)) samples_[k].push_back(value);
+    if (std::isnan(value)) continue;
+    samples_[k].push_back(value);
+    if (record.is_lower_bound(measure_table[k])) censored_[k].push_back(value);
   }
-  if (record.left_domain > 0.0) censored_.push_back(zone);
   phi_.push_back(record.mean_phi_deg);
   wall_clock_ += record.wall_clock;
   steps_ += record.steps;
@@ -178,8 +178,9 @@ MeasureSample StudySummary::sample(const Measure& measure) const {
   };
   if (origin_ && !replicates_.empty()) add(*origin_);
   std::for_each(replicates_.begin(), replicates_.end(), add);
-  return {.values = samples_[static_cast<std::size_t>(&measure - measure_table.data())],
-          .censored = &measure == measure_table.data() ? censored_ : std::vector<double>{},
+  const auto k = static_cast<std::size_t>(&measure - measure_table.data());
+  return {.values = samples_[k],
+          .censored = censored_[k],
           .noise = std::move(noise),
           .failed = failed(),
           .quality = quality_.counts(),

@@ -19,7 +19,7 @@ namespace talus {
 /// How the values of one measure are distributed.
 struct MeasureSample {
   std::vector<double> values;  ///< of the realizations done, in order of index
-  /// Those of `values`, in any order, that are lower bounds: soil of their runs left the terrain through an open end.
+  /// Those of `values`, in any order, that are lower bounds (Record::lower_bounds).
   std::vector<double> censored = {};
   std::vector<double> noise = {};  ///< of realization 0 and its replicates, in order; empty without replicates
   std::int64_t failed = 0;
@@ -58,9 +58,9 @@ class StudySummary {
 
   Plan plan_;
   StopRule stop_;
-  std::array<std::vector<double>, measure_table.size()> samples_;  ///< of the done ones, in order of index
-  std::vector<double> censored_;  ///< run-outs of the done ones whose soil left the terrain
-  std::vector<double> phi_;       ///< mean friction angles [deg]
+  std::array<std::vector<double>, measure_table.size()> samples_;   ///< of the done ones, in order of index
+  std::array<std::vector<double>, measure_table.size()> censored_;  ///< of samples_, the lower bounds
+  std::vector<double> phi_;                                         ///< mean friction angles [deg]
   QualitySummary quality_;
   Json failures_ = Json::array();
   Json missing_ = Json::array();  ///< ranges of indices without a record, up to next_

@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 
-from daemon import TALUS, TALUSD, ServiceTest, case, main, study
+from daemon import SOURCE, TALUS, TALUSD, ServiceTest, case, main, study
 
 
 class Umbridge(ServiceTest):
@@ -61,6 +61,18 @@ class Umbridge(ServiceTest):
         self.assertEqual(model.get_input_sizes(config), [self.TERMS, 2])
         weak, strong = (model([[0.0] * self.TERMS, [0.0, mean]], config)[0][0] for mean in (-1.2, -0.3))
         self.assertGreater(weak, strong)
+
+    def test_an_invalid_run_is_an_error_that_says_why(self):
+        import umbridge
+        document = json.loads((SOURCE / "tests/solver/cli/trials/small-slope.json").read_text())
+        document.update(time={"end_s": 2}, numerics={"sound_speed_m_s": 5})
+        (self.dir / "models/soft.json").write_text(json.dumps(document))
+        body = {"name": "soft", "input": [[0.0] * 50]}
+        reply = self.daemon.post("/Evaluate", body)
+        self.assertEqual((reply.status, reply.json["error"]["type"]), (500, "InvalidOutput"), reply.body)
+        self.assertRegex(reply.json["error"]["message"], "its result is invalid, since .* times the speed of sound")
+        with self.assertRaisesRegex(Exception, "its result is invalid"):
+            umbridge.HTTPModel(self.daemon.url, "soft")(body["input"])
 
     def test_errors(self):
         def error(path, body, kind):

@@ -108,5 +108,21 @@ TEST_F(StoreTest, RunsOfSeveralLevelsAreDistinct) {
   EXPECT_EQ(store->measure_sample(job("one"), measure_table[0], {}).values, std::vector<double>{1});
 }
 
+TEST_F(StoreTest, EachMeasureHasItsOwnLowerBounds) {
+  add("one", 3);
+  Record cut = result(31);
+  cut.lower_bounds = "influence_zone_m front_mass_999_m";
+  for (const Record& record : {result(20), cut, result(25)}) ASSERT_TRUE(store->accept(*store->claim(), record));
+  for (const std::optional<double>& stop : {std::optional<double>(), std::optional(1e-9)}) {
+    const auto censored = [&](const char* key) {
+      return store->measure_sample(job("one"), *find_measure(key), stop).censored;
+    };
+    EXPECT_EQ(censored("influence_zone_m"), std::vector<double>{31});
+    EXPECT_EQ(censored("front_mass_999_m"), std::vector<double>{3});
+    EXPECT_TRUE(censored("front_mass_99_m").empty()) << "whose key is not part of another";
+    EXPECT_TRUE(censored("centre_of_mass_x_m").empty());
+  }
+}
+
 }  // namespace
 }  // namespace talus::service

@@ -64,8 +64,7 @@ def run(path, spacing, work):
 
 def faults_of_run(found):
     result, spacing = found["result"], found["spacing"]
-    rests = result["at_rest"] or result["ending"] == "at_rest"
-    checks = {"not at rest": not rests,
+    checks = {"not at rest": not result["at_rest"],
               f"verdict {result.get('quality')}": result.get("quality", {"verdict": "sound"})["verdict"] != "sound",
               f"penetrated {result['penetrated']}": result["penetrated"] != 0,
               f"a particle {found['depth']:.3g} m in the ground": found["depth"] > PENETRATION * spacing}

@@ -213,13 +213,15 @@ class Run(Directory):
             self.assertEqual(talus("profile", out, "--out", self.dir / "profile.json").returncode, 0)
             self.assertEqual(talus("field", path, "--out", self.dir / "field.csv").returncode, 0)
             profile, field = load(self.dir / "profile.json"), table(self.dir / "field.csv")
-            positions.append([*zip(profile["x_m"], profile["y_m"]), *((float(f["x_m"]), float(f["y_m"])) for f in field)])
+            positions.append((list(zip(profile["x_m"], profile["y_m"])), [(float(f["x_m"]), float(f["y_m"])) for f in field]))
             results.append(load(out / "result.json"))
         self.assertEqual(results[0]["digest"], results[1]["digest"])
         self.assertEqual(results[0]["influence_zone_m"], results[1]["influence_zone_m"])
-        for here, there in zip(*positions, strict=True):
-            for axis in (0, 1):
-                self.assertAlmostEqual(here[axis] + by[axis], there[axis], delta=2e-9)
+        # Of snapshots near zero the points are of single precision, up to 60 m here.
+        for near_points, far_points, rounding in zip(*positions, (2e-6, 2e-9), strict=True):
+            for here, there in zip(near_points, far_points, strict=True):
+                for axis in (0, 1):
+                    self.assertAlmostEqual(here[axis] + by[axis], there[axis], delta=rounding)
 
     def test_json_is_one_value_on_stdout(self):
         done = talus("run", SLOPE, *COARSE, "--out", self.dir / "a", "--json", "--figures")
@@ -301,7 +303,7 @@ class Run(Directory):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertRegex(done.stderr, r"continues from t = \d")
             result = load(out / "result.json")
-            for key in ("digest", "steps", "evaluations", "influence_zone_m", "max_speed_m_s"):
+            for key in ("digest", "steps", "evaluations", "influence_zone_m", "max_speed_m_s", "energy", "quality"):
                 self.assertEqual(result[key], whole[key], key)
             with h5py.File(out / "snapshots.vtkhdf") as a, h5py.File(self.dir / "whole/snapshots.vtkhdf") as b:
                 self.assertEqual(a["VTKHDF/Steps/Values"][:].tolist(), b["VTKHDF/Steps/Values"][:].tolist())
@@ -338,7 +340,7 @@ class Run(Directory):
     def test_a_run_at_rest_has_nothing_to_continue(self):
         rest = ["--set", "time.stop_at_rest=true", "--set", "particle_spacing_m=1", "--set", "time.end_s=60"]
         first = self.run_ok("a", *rest)
-        self.assertTrue(first["at_rest"])
+        self.assertEqual((first["at_rest"], first["ending"]), (True, "at_rest"))
         done = talus("run", SLOPE, *COARSE, *rest[:-1], "time.end_s=80", "--out", self.dir / "a", "--resume")
         self.assertEqual(done.returncode, 5)
         self.assertIn("came to rest before its end, t = 60 s", done.stderr)

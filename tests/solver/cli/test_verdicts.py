@@ -3,12 +3,31 @@
 
 usage: test_verdicts.py TALUS SOURCE_DIR [Run] [Study]
 """
+import io
+import json
 import sys
 import unittest
+
+import h5py
 
 from cli import SOURCE, Directory, check_schema, load, table, talus
 
 SLOPE, SMALL = (SOURCE / "tests/solver/cli/trials" / name for name in ("slope.json", "small-slope.json"))
+
+
+PREAMBLE = 512  # bytes of a checkpoint before its HDF5 part
+
+
+def edit_checkpoint(path, change):
+    """Calls change(file) with the HDF5 part of a checkpoint, and renews length and checksum (FNV-1a)."""
+    body = io.BytesIO(path.read_bytes()[PREAMBLE:])
+    with h5py.File(body, "r+") as file:
+        change(file)
+    checksum = 0xCBF29CE484222325
+    for byte in body.getvalue():
+        checksum = (checksum ^ byte) * 0x100000001B3 % 2**64
+    head = f"talus checkpoint\nbytes {len(body.getvalue())}\nfnv1a64 {checksum:016x}\n".encode()
+    path.write_bytes(head.ljust(PREAMBLE, b"\0") + body.getvalue())
 
 
 def overrides(settings):
@@ -21,10 +40,10 @@ class Run(Directory):
         out = self.dir / str(len(list(self.dir.iterdir())))
         done = talus("run", case, *overrides(settings), "--out", out, "--threads", 1, *extra)
         self.assertEqual(done.returncode, 0, done.stderr)
-        result = load(out / "result.json")
-        check_schema("result", result)
+        self.result = load(out / "result.json")
+        check_schema("result", self.result)
         self.stderr = done.stderr
-        return result["quality"], done.stdout.splitlines()
+        return self.result["quality"], done.stdout.splitlines()
 
     def assert_says(self, check, verdict, *settings, **options):
         quality, lines = self.verdict(*settings, **options)
@@ -38,6 +57,7 @@ class Run(Directory):
     def test_a_sound_run_says_nothing(self):
         quality, lines = self.verdict("particle_spacing_m=0.8")
         self.assertEqual(quality, {"verdict": "sound", "reasons": []})
+        self.assertTrue(self.result["at_rest"])
         self.assertEqual(lines[0], "distances from x = 0 m to the right")
         self.assertEqual(self.stderr, "")
 
@@ -68,9 +88,29 @@ class Run(Directory):
     def test_a_run_that_ends_too_early_is_doubtful(self):
         quality = self.assert_says("still_moving", "doubtful", "particle_spacing_m=0.8", "time.end_s=2")
         self.assertIn("when the run ended at t = 2 s", quality["reasons"][0]["message"])
+        self.assertFalse(self.result["at_rest"])
+
+    def test_a_loose_rule_of_rest_ends_a_run_at_rest_that_is_doubtful(self):
+        rule = 'time.stop_at_rest={"speed_m_s": 2.5, "hold_s": 0.1}'
+        self.assert_says("still_moving", "doubtful", "particle_spacing_m=0.8", rule)
+        self.assertEqual((self.result["ending"], self.result["at_rest"]), ("at_rest", True))
 
     def test_a_bed_that_is_too_short_is_doubtful(self):
-        self.assert_says("left_terrain", "doubtful", "particle_spacing_m=0.8", "terrain.bed_m.2.0=28")
+        quality = self.assert_says("left_terrain", "doubtful", "particle_spacing_m=0.8", "terrain.bed_m.2.0=28")
+        self.assertIn("front_at_open_end", [reason["check"] for reason in quality["reasons"]])
+        bounds = ["influence_zone_m", "front_connected_m", "front_mass_99_m", "front_mass_999_m", "centre_of_mass_x_m"]
+        self.assertEqual(self.result["lower_bounds"], bounds)  # 5 % of the soil left
+
+    def test_a_front_that_ends_on_the_terrain_is_no_lower_bound(self):
+        quality, lines = self.verdict("particle_spacing_m=0.8", "terrain.bed_m.2.0=30.4")
+        self.assertEqual([reason["check"] for reason in quality["reasons"]][0], "left_terrain")
+        result = self.result
+        self.assertLess(result["front_mass_99_m"], 30.4)
+        self.assertLess(result["left_domain"], 0.01 * result["particles"]["soil"])
+        self.assertIn("influence_zone_m", result["lower_bounds"])
+        self.assertIn("centre_of_mass_x_m", result["lower_bounds"])
+        self.assertNotIn("front_mass_99_m", result["lower_bounds"])
+        self.assertIn(f">={result['influence_zone_m']:.3f} m", "\n".join(lines))
 
     def test_too_few_particles_are_doubtful_and_warned_of(self):
         self.assert_says("few_particles_across", "doubtful", "particle_spacing_m=2")
@@ -81,6 +121,67 @@ class Run(Directory):
         self.assert_says("short_correlation_length", "doubtful", *settings, case=SMALL, extra=["--realization", 0])
         quality, _ = self.verdict(*settings, case=SMALL)  # the median run
         self.assertNotIn("short_correlation_length", [reason["check"] for reason in quality["reasons"]])
+
+    def resumed(self, change):
+        """Quality and result of a run whose checkpoint at t = 1 s was changed."""
+        out = self.dir / "resumed"
+        run = ["run", SMALL, "--out", out, "--threads", 1]
+        self.assertEqual(talus(*run, "--set", "time.end_s=1").returncode, 0)
+        before = load(out / "result.json")["quality"]
+        edit_checkpoint(out / "checkpoint.h5", change)
+        done = talus(*run, "--set", "time.end_s=3", "--resume")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        result = load(out / "result.json")
+        check_schema("result", result)
+        self.assertEqual([reason["check"] for reason in before["reasons"]], ["still_moving"])
+        return {reason["check"]: reason for reason in result["quality"]["reasons"]}, result
+
+    def test_soil_in_the_ground(self):
+        """The contact holds all soil, so that a particle must be put into the rock by hand."""
+        def bury(file):
+            y = file["reals/y"]
+            lowest = int(y[:].argmin())
+            for name in ("reals/y", "reals/y_sorted"):
+                file[name][lowest] -= 0.6  # 1.2 spacings
+        reasons, result = self.resumed(bury)
+        self.assertEqual(result["penetrated"], 1)
+        self.assertEqual(reasons["particles_in_ground"]["verdict"], "doubtful")  # 1 of 132: less than a hundredth
+        self.assertEqual(reasons["particles_in_ground"]["message"],
+                         "1 of 132 particles were deeper than half a spacing in the ground")
+
+    def test_extremes_outlast_a_checkpoint(self):
+        def raise_peaks(file):
+            scalars = file["reals/scalars"]
+            scalars[1], scalars[6] = 50.0, 0.1  # peak speed [m/s], peak of rho/rho0 - 1
+        reasons, result = self.resumed(raise_peaks)
+        self.assertEqual(result["max_speed_m_s"], 50.0)
+        self.assertIn("mach_number", reasons)
+        self.assertEqual(reasons["compression"]["value"], 0.1)
+
+    def test_a_field_is_mirrored_with_its_slide(self):
+        """Two modes along x: the first is even about the middle of the slide, the second odd."""
+        right = load(SMALL)
+        right["random_field"] = {"correlation_length_m": 3, "log_stdev": 0.3, "terms": 2, "direction": "x"}
+        mirror = lambda points: [[-x, y] for x, y in reversed(points)]
+        outline = right["slide"]["outlines"][0]["outline_m"]
+        left = right | {"terrain": {"bed_m": mirror(right["terrain"]["bed_m"])}, "slide": {"outlines": [{"outline_m": mirror(outline)}]}}
+        fronts = []
+        for case, xi in ((right, [1.0, 1.5]), (left, [1.0, -1.5]), (left, [1.0, 1.5])):
+            path = self.dir / "case.json"
+            path.write_text(json.dumps(case | {"random_field": case["random_field"] | {"xi": xi}}))
+            self.verdict(case=path, extra=["--realization", 0])
+            fronts.append(self.result)
+        for key in ("influence_zone_m", "front_mass_99_m", "centre_of_mass_x_m"):
+            self.assertAlmostEqual(fronts[0][key], fronts[1][key], delta=1e-3, msg=key)
+            self.assertGreater(abs(fronts[2][key] - fronts[1][key]), 0.05, key)
+
+    def test_the_cases_of_the_paper_take_the_vectorised_loops(self):
+        cases = sorted((SOURCE / "solver/cases").glob("table4-case*.json"))
+        self.assertEqual(len(cases), 9)
+        for case in cases:
+            self.verdict("particle_spacing_m=1", "time.end_s=0.01", "time.snapshot_times_s=[]", case=case)
+            self.assertEqual(self.result["backend"], "vectorised", case)
+            self.assertNotIn("times slower", self.stderr)
 
     def test_all_commands_print_the_same_warnings(self):
         settings = overrides(["random_field.correlation_length_m=0.2", "random_field.terms=10", "time.end_s=0.1"])
@@ -114,6 +215,29 @@ class Study(Directory):
         self.assertEqual(talus("stats", self.dir / "s").stdout, done.stdout)
         self.assertEqual((self.dir / "s/study.json").read_text(), before)
 
+    def test_the_study_whose_steps_were_too_long(self):
+        """Stable, its mean and standard deviation are 14.7 m and 1.8 m (14.48 m and 1.85 m with cells that lack mass)."""
+        done, summary, rows = self.study("numerics.cfl=0.4", realizations=20)
+        self.assertEqual((done.returncode, summary["quality"]["invalid"]), (0, 0), done.stderr)
+        front = summary["quantities"]["influence_zone_m"]
+        self.assertAlmostEqual(front["mean"], 14.73, delta=0.1)
+        self.assertAlmostEqual(front["stdev"], 1.81, delta=0.1)
+        self.assertIn("front still moving", done.stdout.splitlines()[0])
+
+    def test_steps_that_are_too_long_are_seen_in_the_runs(self):
+        """0.95 h/c: what the limit of numerics.cfl refuses, and a fixed step does not."""
+        done, summary, rows = self.study("numerics.integrator=leapfrog", "time.fixed_step_s=0.0057", realizations=3)
+        self.assertEqual((done.returncode, summary["quality"]["invalid"]), (7, 3), done.stderr)
+        for row in rows:
+            self.assertIn("energy_created", row["verdict_reasons"])
+
+    def test_noise_as_large_as_the_spread(self):
+        done, summary, _ = self.study("random_field.cov_tan_phi=1e-6", "study.noise_floor_replicates=3", "time.end_s=1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("noise_near_spread", [reason["check"] for reason in summary["quality"]["reasons"]])
+        self.assertIn("study doubtful", done.stdout.splitlines()[0])
+        self.assertIn("more than a third of it", done.stdout.splitlines()[0])
+
     def test_soil_that_leaves(self):
         done, summary, rows = self.study("terrain.bed_m.2.0=10.5", "time.end_s=8")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -122,6 +246,10 @@ class Study(Directory):
         self.assertIn(f"left terrain ({len(left)})", done.stdout.splitlines()[0])
         for row in rows:
             self.assertEqual("left_terrain: " in row["verdict_reasons"], row in left)
+            self.assertEqual("influence_zone_m" in row["lower_bounds"].split(), row in left)
+        for key, quantity in summary["quantities"].items():
+            cut = [float(row[key]) for row in rows if key in row["lower_bounds"].split()]
+            self.assertEqual(quantity["censored"], {"runs": len(cut), "from": min(cut)} if cut else None, key)
 
     def test_invalid_runs_have_failed(self):
         done, summary, rows = self.study("numerics.sound_speed_m_s=5", "time.end_s=2")

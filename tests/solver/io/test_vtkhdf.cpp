@@ -95,6 +95,9 @@ TEST(Snapshots, OfACaseFarFromZeroKeepItsOrigin) {
   const Frame found = read_after_writing(dir / "far.vtkhdf", far);
   EXPECT_EQ(found.origin, far.origin);
   expect_equal(found, far);
+  for (Vec2& x : far.position) x = {x.x + 1e-6, x.y - 1e-6};
+  const Frame close = read_after_writing(dir / "far.vtkhdf", far);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(norm(close.position[i] - far.position[i]), 0.0, 1e-9) << i;
 }
 
 TEST(Snapshots, OfMoreParticlesThanAChunkHolds) {

@@ -15,6 +15,7 @@ from vtkmodules.vtkCommonCore import vtkVersion
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 from vtkmodules.vtkIOHDF import vtkHDFReader
 
+ORIGIN = np.array([2_683_000.0, 1_247_000.0, 0.0])  # of far.vtkhdf
 N, N_SOIL, STEPS = 3000, 2000, 70  # more steps than HDF5 puts into one chunk of the step lists
 
 
@@ -128,6 +129,20 @@ def check_xdmf_with_vtk(path):
     return "XDMF too"
 
 
+def check_far(directory):
+    """Points on a national grid are in its coordinates, to the micrometre, in both files."""
+    micrometre = np.array([1e-6, 1e-6, 0.0])
+    reader = vtkHDFReader()
+    reader.SetFileName(f"{directory}/far.vtkhdf")
+    steps = ElementTree.parse(f"{directory}/far.xdmf").getroot().findall("Domain/Grid/Grid")
+    assert len(steps) == 4, f"{len(steps)} steps"
+    for k, step in enumerate(steps):
+        reader.UpdateTimeStep(k / 10)
+        for points in (arrays_of(reader.GetOutput())["Points"], hyperslab(step.find("Geometry/DataItem"), directory)):
+            worst = np.abs(points - (expected(k)["Points"] + ORIGIN + micrometre)).max()
+            assert worst < 1e-8, f"far.vtkhdf step {k}: points are off by {worst} m"
+
+
 def check_points(path):
     reader = vtkHDFReader()
     reader.SetFileName(path)
@@ -142,6 +157,7 @@ def main(writer):
         check_vtkhdf(f"{directory}/snapshots.vtkhdf")
         check_xdmf_by_hand(f"{directory}/snapshots.xdmf")
         note = check_xdmf_with_vtk(f"{directory}/snapshots.xdmf")
+        check_far(directory)
         check_points(f"{directory}/points.vtkhdf")
     print(f"VTK {vtkVersion.GetVTKVersion()} read {STEPS} steps of {N} particles, every array as written; {note}")
 

@@ -33,7 +33,7 @@ std::string refusal(const std::string& text) {
 const std::string head =
     "index,status,influence_zone_m,front_connected_m,front_mass_99_m,front_mass_999_m,centre_of_mass_x_m,mean_friction_"
     "angle_deg,captured_variance,"
-    "steps,wall_clock_s,digest,reason,verdict,verdict_reasons,left_domain\n";
+    "steps,wall_clock_s,digest,reason,verdict,verdict_reasons,lower_bounds,left_domain\n";
 
 /// The header of version 0.1.0.
 const std::string head_0_1_0 = head.substr(0, head.find(",verdict")) + "\n";
@@ -46,13 +46,14 @@ TEST(Csv, OneLineForEachRecord) {
   r.left_domain = 2;
   r.verdict = Verdict::doubtful;
   r.objections = "left_terrain: 2 of 5 left";
+  r.lower_bounds = "influence_zone_m centre_of_mass_x_m";
   EXPECT_EQ(
       table_of({r, failed(7, "diverged: at step 12, \"fast\"\nreally"), failed_record(8, "invalid result: a: b")}),
       head +
           "3,done,34.5,34.2,33.8,34.1,0.30000000000000004,24.7,0.25,1003,1.5,0000000000000013,,doubtful,"
-          "\"left_terrain: 2 of 5 left\",2\n"
-          "7,failed,,,,,,,,,,,\"diverged: at step 12, \"\"fast\"\" really\",,,\n"
-          "8,failed,,,,,,,,,,,\"invalid result: a: b\",invalid,\"a: b\",\n");
+          "\"left_terrain: 2 of 5 left\",\"influence_zone_m centre_of_mass_x_m\",2\n"
+          "7,failed,,,,,,,,,,,\"diverged: at step 12, \"\"fast\"\" really\",,,,\n"
+          "8,failed,,,,,,,,,,,\"invalid result: a: b\",invalid,\"a: b\",,\n");
 }
 
 TEST(Csv, ReadsBackExactly) {
@@ -63,12 +64,16 @@ TEST(Csv, ReadsBackExactly) {
   r.left_domain = 2;
   r.verdict = Verdict::doubtful;
   r.objections = "left_terrain: 2 of 5 left; still_moving: yes";
+  r.lower_bounds = "influence_zone_m front_mass_999_m";
   write(path, table_of({r, failed(7, "a, \"b\"; c"), failed_record(8, "invalid result: a: b"), done(1000000, -0.125)}));
   const std::vector<Record> back = read_csv(path, "index");
   ASSERT_EQ(back.size(), 4u);
   EXPECT_EQ(back[0].left_domain, 2.0);
   EXPECT_EQ(back[0].verdict, Verdict::doubtful);
   EXPECT_EQ(back[0].objections, r.objections);
+  EXPECT_EQ(back[0].lower_bounds, r.lower_bounds);
+  EXPECT_TRUE(back[0].is_lower_bound(*find_measure("front_mass_999_m")));
+  EXPECT_FALSE(back[0].is_lower_bound(*find_measure("front_mass_99_m")));
   EXPECT_EQ(back[2].verdict, Verdict::invalid);
   EXPECT_EQ(back[2].objections, "a: b");
   EXPECT_TRUE(back[0].done);
@@ -117,7 +122,7 @@ TEST(Csv, AMeasureThatTheTableLacksHasNoValue) {
   const TemporaryDirectory directory;
   std::string header = head;
   header.erase(header.find("front_mass_999_m,"), std::string("front_mass_999_m,").size());
-  write(directory / "t.csv", header + "3,done,34.5,34.2,33.8,12,24.7,0.25,1003,1.5,d,,sound,,0\n");
+  write(directory / "t.csv", header + "3,done,34.5,34.2,33.8,12,24.7,0.25,1003,1.5,d,,sound,,,0\n");
   const std::vector<Record> back = read_csv(directory / "t.csv", "index");
   EXPECT_TRUE(std::isnan(back.at(0).measures.front_mass_999));
   EXPECT_EQ(back[0].measures.centre_of_mass_x, 12.0);
@@ -127,7 +132,7 @@ TEST(Csv, AMeasureThatTheTableLacksHasNoValue) {
 
 TEST(Csv, AcceptsLineEndsOfOtherSystems) {
   const TemporaryDirectory directory;
-  write(directory / "t.csv", "index" + head.substr(5, head.size() - 6) + "\r\n3,failed,,,,,,,,,,,\"x\",,,\r\n");
+  write(directory / "t.csv", "index" + head.substr(5, head.size() - 6) + "\r\n3,failed,,,,,,,,,,,\"x\",,,,\r\n");
   EXPECT_EQ(read_csv(directory / "t.csv", "index").front().reason, "x");
 }
 
@@ -139,15 +144,15 @@ TEST(Csv, NamesFileLineAndFault) {
   EXPECT_NE(refusal("index,status,steps,steps\n").find("the column \"steps\" stands there twice"), std::string::npos);
   EXPECT_NE(refusal("index,status\n").find("the column \"influence_zone_m\" is missing"), std::string::npos);
   EXPECT_NE(refusal(head_0_1_0.substr(0, 40) + "\n").find("is unknown"), std::string::npos);  // cut off
-  EXPECT_NE(refusal(head + "3,done,1,1,1,1,1,1,1,1,1,d,,fine,,\n").find("t.csv:2 has the unknown verdict \"fine\""),
+  EXPECT_NE(refusal(head + "3,done,1,1,1,1,1,1,1,1,1,d,,fine,,,\n").find("t.csv:2 has the unknown verdict \"fine\""),
             std::string::npos);
-  EXPECT_NE(refusal(good + "4,done,1\n").find("t.csv:3 has 3 fields instead of 16"), std::string::npos);
-  EXPECT_NE(refusal(good + "3,failed,,,,,,,,,,,x,,,\n").find("t.csv:3 has the index 3 out of order, or twice"),
+  EXPECT_NE(refusal(good + "4,done,1\n").find("t.csv:3 has 3 fields instead of 17"), std::string::npos);
+  EXPECT_NE(refusal(good + "3,failed,,,,,,,,,,,x,,,,\n").find("t.csv:3 has the index 3 out of order, or twice"),
             std::string::npos);
-  EXPECT_NE(refusal(head + "3,lost,,,,,,,,,,,x,,,\n").find("t.csv:2 has the status \"lost\""), std::string::npos);
-  EXPECT_NE(refusal(head + "3,done,far,1,1,1,1,1,1,1,1,d,,,,\n").find("t.csv:2 field 3: \"far\" is not a number"),
+  EXPECT_NE(refusal(head + "3,lost,,,,,,,,,,,x,,,,\n").find("t.csv:2 has the status \"lost\""), std::string::npos);
+  EXPECT_NE(refusal(head + "3,done,far,1,1,1,1,1,1,1,1,d,,,,,\n").find("t.csv:2 field 3: \"far\" is not a number"),
             std::string::npos);
-  EXPECT_NE(refusal(head + "3,done,nan,1,1,1,1,1,1,1,1,d,,,,\n").find("\"nan\" is not a number"), std::string::npos);
+  EXPECT_NE(refusal(head + "3,done,nan,1,1,1,1,1,1,1,1,d,,,,,\n").find("\"nan\" is not a number"), std::string::npos);
   EXPECT_NE(refusal(head + "3,failed,,,,,,,,,,,\"x\n").find("t.csv:2 has 0 fields"),
             std::string::npos);  // an open quote
 }

@@ -138,23 +138,33 @@ TEST(Summary, SaysWhatALatinHypercubeMeansForIntervals) {
   EXPECT_EQ(study["provenance"]["sampling"], "latin_hypercube");
 }
 
-TEST(Summary, RunOutsOfSoilThatLeftTheTerrainAreLowerBounds) {
+TEST(Summary, MeasuresOfSoilThatLeftTheTerrainAreLowerBounds) {
+  // The bed ends at 31 m. Soil of runs 6 to 9 left, of run 9 more than 1 % of it.
   std::vector<Record> runs;
   for (std::int64_t k = 0; k < 10; ++k) {
     Record run{.index = k, .done = true};
     run.measures.influence_zone = k < 6 ? 20.0 + static_cast<double>(k) : 31.0;
-    run.left_domain = k < 6 ? 0.0 : 3.0;
+    run.measures.front_mass_99 = k < 9 ? 19.0 + static_cast<double>(k) : 31.0;
+    run.measures.centre_of_mass_x = 12.0 + static_cast<double>(k);
+    if (k >= 6) run.lower_bounds = "influence_zone_m front_mass_999_m centre_of_mass_x_m";
+    if (k == 9) run.lower_bounds += " front_mass_99_m";
     runs.push_back(run);
   }
   Plan plan;
   plan.study.realizations = 10;
-  const Json q = summary_of(plan, runs, {}).json()["quantities"]["influence_zone_m"];
+  const Json quantities = summary_of(plan, runs, {}).json()["quantities"];
+  const Json q = quantities["influence_zone_m"];
   EXPECT_EQ(q["censored"], (Json{{"runs", 4}, {"from", 31.0}}));
   EXPECT_EQ(q["mean_at_least"], true);
   EXPECT_TRUE(q["mean_ci95"].is_null());
   for (const Json& quantile : q["quantiles"]) EXPECT_EQ(quantile["at_least"], quantile["p"] >= 0.75) << quantile;
   EXPECT_EQ(q["exceedance"].back()["p"], 0.4) << "at the bed's end and beyond";
-  for (Record& run : runs) run.left_domain = 0.0;
+  EXPECT_EQ(quantities["front_mass_99_m"]["censored"], (Json{{"runs", 1}, {"from", 31.0}}));
+  EXPECT_EQ(quantities["front_mass_99_m"]["exceedance"].back()["p"], 0.1);
+  EXPECT_EQ(quantities["front_mass_99_m"]["mean_at_least"], true);
+  EXPECT_EQ(quantities["centre_of_mass_x_m"]["censored"], (Json{{"runs", 4}, {"from", 18.0}}));
+  EXPECT_TRUE(quantities["front_connected_m"]["censored"].is_null());
+  for (Record& run : runs) run.lower_bounds.clear();
   const Json known = summary_of(plan, runs, {}).json()["quantities"]["influence_zone_m"];
   EXPECT_EQ(known["mean_at_least"], false);
   EXPECT_TRUE(known["censored"].is_null());
