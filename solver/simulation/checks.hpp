@@ -18,24 +18,25 @@ constexpr double stable_cfl(Integrator integrator) { return integrator == Integr
 /// Root-mean-square speed of a slide at rest over sqrt(|g| H), at most [-].
 inline constexpr double rest_speed = 0.01;
 /// By how many spacings the front of a slide at rest may still advance [-].
-inline constexpr double rest_run_on = 1.0;
+inline constexpr double rest_advance = 1.0;
 
 /// What the checks look at. The defaults are those of a run without fault; what is unset is not checked.
 struct RunFacts {
-  EnergyBudget energy = {};                       ///< at the end
-  bool steady_contact = true;                     ///< the walls act at all times, not only on soil that approaches them
-  double weight = 1.0;                            ///< of all soil [N/m]
-  double mach = 0.0;                              ///< peak speed over the speed of sound [-]
-  double density_rise = 0.0;                      ///< largest rho/rho0 - 1 of any particle at any time [-]
-  std::int64_t soil = 1;                          ///< particles
-  std::int64_t penetrated = 0;                    ///< of them, those that were ever lost in the ground
-  std::int64_t left_domain = 0;                   ///< of them, those that left through an open end
-  std::int64_t at_open_end = 0;                   ///< of them, those that came to within a spacing of an open end
-  double dx = 1.0;                                ///< particle spacing [m]
-  double time = 0.0;                              ///< reached [s]
-  std::optional<double> rms_speed = {};           ///< at the end, over sqrt(|g| H) [-]; unset: soil without strength
-  std::optional<double> run_on = {};              ///< by which the front may still advance [m]; unset as rms_speed
-  std::optional<double> rows = {};                ///< particles across the slide at the start
+  EnergyBudget energy = {};              ///< at the end
+  bool steady_contact = true;            ///< the walls act at all times, not only on soil that approaches them
+  double weight = 1.0;                   ///< of all soil [N/m]
+  double mach = 0.0;                     ///< peak speed over the speed of sound [-]
+  double density_rise = 0.0;             ///< largest rho/rho0 - 1 of any particle at any time [-]
+  std::int64_t soil = 1;                 ///< particles
+  std::int64_t penetrated = 0;           ///< of them, those that were ever lost in the ground
+  std::int64_t left_domain = 0;          ///< of them, those that left through an open end
+  std::int64_t at_open_end = 0;          ///< of them, those that came to within a spacing of an open end
+  double dx = 1.0;                       ///< particle spacing [m]
+  double time = 0.0;                     ///< reached [s]
+  std::optional<double> rms_speed = {};  ///< at the end, over sqrt(|g| H) [-]; unset: soil without strength
+  std::optional<double> run_on = {};     ///< by which the front may still advance [m]; unset as rms_speed
+  std::optional<double> creep = {};      ///< of the front in as long again as the run lasted [m]; unset as rms_speed
+  std::optional<double> rows = {};       ///< particles across the slide at the start
   std::optional<double> correlation_length = {};  ///< shortest, of a field that is not averaged over cells [m]
   std::optional<double> courant = {};             ///< of a fixed time step [-]
   double courant_limit = 1.0;                     ///< of the integrator [-]

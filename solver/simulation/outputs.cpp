@@ -84,12 +84,30 @@ double Simulation::run_on() const {
   return std::max({0.0, right_then - right, left - left_then});
 }
 
+/// By how much the leading tenth of the soil would advance, at its present mean velocity, in as long again as the run
+/// has lasted: viscous soil creeps far at a speed that is small. Vibrations cancel. [m]
+double Simulation::creep() const {
+  const RunOutAxis& axis = model_.terrain.run_out;
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < soil_.n_active; ++i) order.emplace_back(-axis.distance(soil_.x[i]), i);
+  if (order.empty()) return 0.0;
+  std::ranges::sort(order);
+  order.resize(std::max<std::size_t>(order.size() / 10, 1));
+  double momentum = 0.0, mass = 0.0;
+  for (const auto& [place, i] : order) {
+    momentum += soil_.m[i] * (axis.to == SlidesTo::right ? soil_.vx[i] : -soil_.vx[i]);
+    mass += soil_.m[i];
+  }
+  return std::max(0.0, momentum / mass * time_);
+}
+
 /// Root-mean-square speed over sqrt(|g| H) [-].
 double Simulation::relative_speed() const { return rms_speed(soil_) / std::sqrt(norm(model_.g) * fall_height(model_)); }
 
-/// By the rule of the case, or by that of the verdict (`still_moving`, `front_still_moving`).
+/// By the rule of the case, or by that of the verdict (`still_moving`, `front_still_moving`, `creeping`).
 bool Simulation::at_rest() const {
-  return rests() || (relative_speed() <= rest_speed && run_on() <= rest_run_on * model_.dx);
+  const double spacings = rest_advance * model_.dx;
+  return rests() || (relative_speed() <= rest_speed && run_on() <= spacings && creep() <= spacings);
 }
 
 /// Particles that are nearer than a spacing to an open end of the bed, and did not start there.
@@ -123,6 +141,7 @@ RunFacts Simulation::facts() const {
   if (any_positive(soil_.tan_phi) || any_positive(soil_.c)) {  // otherwise it never comes to rest
     f.rms_speed = relative_speed();
     f.run_on = run_on();
+    f.creep = creep();
   }
   return f;
 }

@@ -13,6 +13,13 @@
 namespace talus {
 namespace {
 
+/// Beyond an open end of the bed, or over the wall of a walled one.
+bool departed(const Terrain& terrain, Vec2 x) {
+  if (x.x < terrain.bed.front().x) return !terrain.left_wall || x.y > terrain.wall_top;
+  if (x.x > terrain.bed.back().x) return !terrain.right_wall || x.y > terrain.wall_top;
+  return false;
+}
+
 constexpr std::int64_t observation_interval = 20;  ///< steps between two observations of rest and density
 
 /// Adds up the times of parts of a run.
@@ -117,14 +124,13 @@ void Simulation::meet_the_ground(StepExtrema& extrema) {
   flow_->state_changed();
 }
 
-/// Soil that left through an open end stops taking part: it is swapped behind the active ones and keeps its last state.
+/// Soil that left the terrain stops taking part: it is swapped behind the active ones and keeps its last state.
 void Simulation::retire_departed(const StepExtrema& extrema) {
   if (model_.terrain.closed) return;
-  const double left = model_.terrain.left_wall ? -1e300 : model_.terrain.bed.front().x;
-  const double right = model_.terrain.right_wall ? 1e300 : model_.terrain.bed.back().x;
-  if (extrema.leftmost >= left && extrema.rightmost <= right) return;
+  const Terrain& terrain = model_.terrain;
+  if (extrema.leftmost >= terrain.bed.front().x && extrema.rightmost <= terrain.bed.back().x) return;
   for (std::size_t i = 0; i < soil_.n_active;) {
-    if (soil_.x[i] >= left && soil_.x[i] <= right) {
+    if (!departed(terrain, soil_.position(i))) {
       ++i;
       continue;
     }

@@ -73,6 +73,7 @@ class Simulation {
   double density_rise() const;
   double relative_speed() const;
   double run_on() const;
+  double creep() const;
   bool at_rest() const;
   std::int64_t at_open_end() const;
 

@@ -45,6 +45,11 @@ class Run(Directory):
         self.stderr = done.stderr
         return self.result["quality"], done.stdout.splitlines()
 
+    def file(self, title, **members):
+        path = self.dir / f"{title}.json"
+        path.write_text(json.dumps({"title": title, **members}))
+        return path
+
     def assert_says(self, check, verdict, *settings, **options):
         quality, lines = self.verdict(*settings, **options)
         reasons = {reason["check"]: reason for reason in quality["reasons"]}
@@ -89,6 +94,35 @@ class Run(Directory):
         quality = self.assert_says("still_moving", "doubtful", "particle_spacing_m=0.8", "time.end_s=2")
         self.assertIn("when the run ended at t = 2 s", quality["reasons"][0]["message"])
         self.assertFalse(self.result["at_rest"])
+
+    def test_a_slide_that_creeps_is_not_at_rest(self):
+        path = self.file("viscous", particle_spacing_m=1, terrain={"bed_m": [[0, 6], [30, 0], [120, 0]]},
+                         slide={"outlines": [{"outline_m": [[0, 6], [20, 2], [20, 10], [0, 12]]}]}, time={"end_s": 20},
+                         material={"density_kg_m3": 2000, "friction_angle_deg": 5, "viscosity_Pa_s": 2e5})
+        self.assert_says("creeping", "doubtful", case=path)
+        self.assertFalse(self.result["at_rest"])
+        front = self.result["influence_zone_m"]
+        self.verdict("time.end_s=40", case=path)
+        self.assertGreater(self.result["influence_zone_m"], front + 1, "it said that it would go on")
+
+    def test_soil_that_the_numerics_hold_back_is_doubtful(self):
+        # A slab on a plane of 10 degrees with a friction angle of 8 must accelerate for ever.
+        slab = [[9.848, 50.36], [29.544, 46.887], [29.892, 48.857], [10.195, 52.33]]
+        path = self.file("slab", particle_spacing_m=0.4, slide={"outlines": [{"outline_m": slab}]}, time={"end_s": 4},
+                         terrain={"bed_m": [[0, 52.094], [295.442, 0]], "left_end": "open"},
+                         material={"density_kg_m3": 2000, "friction_angle_deg": 8})
+        self.assert_says("numerical_dissipation", "doubtful", case=path)
+        quality, _ = self.verdict("numerics.artificial_viscosity_jump=reconstructed", case=path)
+        self.assertNotIn("numerical_dissipation", [reason["check"] for reason in quality["reasons"]])
+
+    def test_soil_that_spills_over_an_end_wall_has_left(self):
+        path = self.file("spill", particle_spacing_m=0.5, time={"end_s": 4},
+                         terrain={"bed_m": [[0, 20], [20, 0], [24, 0]], "right_end": "wall", "wall_top_m": 20.5},
+                         slide={"outlines": [{"outline_m": [[0, 20], [10, 10], [10, 16], [0, 26]]}]},
+                         material={"density_kg_m3": 2000, "friction_angle_deg": 15})
+        self.assert_says("left_terrain", "doubtful", case=path)
+        self.assertGreater(self.result["left_domain"], 0)
+        self.assertEqual(self.result["penetrated"], 0)
 
     def test_a_loose_rule_of_rest_ends_a_run_at_rest_that_is_doubtful(self):
         rule = 'time.stop_at_rest={"speed_m_s": 2.5, "hold_s": 0.1}'

@@ -39,6 +39,14 @@ const std::vector<Row> rows{
     {"energy_created", 0.01, Verdict::doubtful, [](RunFacts& f, double x) { f.energy.kinetic += 1000.0 * x; },
      "created energy equal to 1.01 % of gravity's work"},
     {"energy_created", 0.1, Verdict::invalid, [](RunFacts& f, double x) { f.energy.friction = 1000.0 * x; }, "10.1 %"},
+    {"numerical_dissipation", 1.0 / 3.0, Verdict::doubtful,
+     [](RunFacts& f, double x) {
+       f.rms_speed = 0.0;
+       f.energy.artificial_viscosity = 900.0 * x;
+       f.energy.density_diffusion = 100.0 * x;
+       f.energy.kinetic -= 1000.0 * x;
+     },
+     "33.7 % of the energy went into artificial viscosity and density diffusion"},
     {"mach_number", 0.2, Verdict::doubtful, [](RunFacts& f, double x) { f.mach = x; },
      "0.202 times the speed of sound"},
     {"mach_number", 0.5, Verdict::invalid, [](RunFacts& f, double x) { f.mach = x; }, "0.505 times"},
@@ -48,6 +56,8 @@ const std::vector<Row> rows{
      "at 1.01 % of sqrt(g H) when the run ended at t = 9 s"},
     {"front_still_moving", 1.0, Verdict::doubtful, [](RunFacts& f, double x) { f.run_on = 0.5 * x; },
      "0.505 m beyond the front"},
+    {"creeping", 1.0, Verdict::doubtful, [](RunFacts& f, double x) { f.creep = 0.5 * x; },
+     "at t = 9 s: at its speed it would advance 0.505 m in as long again"},
     {"few_particles_across", 5.0, Verdict::doubtful, [](RunFacts& f, double x) { f.rows = x; }, "4.95 particles thick",
      true},
     {"short_correlation_length", 1.0, Verdict::doubtful, [](RunFacts& f, double x) { f.correlation_length = 0.5 * x; },
