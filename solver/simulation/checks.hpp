@@ -35,8 +35,9 @@ struct RunFacts {
   double time = 0.0;                     ///< reached [s]
   std::optional<double> rms_speed = {};  ///< at the end, over sqrt(|g| H) [-]; unset: soil without strength
   std::optional<double> run_on = {};     ///< by which the front may still advance [m]; unset as rms_speed
-  std::optional<double> creep = {};      ///< of the front in as long again as the run lasted [m]; unset as rms_speed
-  std::optional<double> rows = {};       ///< particles across the slide at the start
+  std::optional<double> creep = {};  ///< of the front in as long again as the run lasted [m]; unset as rms_speed, and
+                                     ///< where that is above rest_speed
+  std::optional<double> rows = {};   ///< particles across the slide at the start
   std::optional<double> correlation_length = {};  ///< shortest, of a field that is not averaged over cells [m]
   std::optional<double> courant = {};             ///< of a fixed time step [-]
   double courant_limit = 1.0;                     ///< of the integrator [-]

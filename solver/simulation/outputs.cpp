@@ -141,7 +141,7 @@ RunFacts Simulation::facts() const {
   if (any_positive(soil_.tan_phi) || any_positive(soil_.c)) {  // otherwise it never comes to rest
     f.rms_speed = relative_speed();
     f.run_on = run_on();
-    f.creep = creep();
+    if (*f.rms_speed <= rest_speed) f.creep = creep();
   }
   return f;
 }
