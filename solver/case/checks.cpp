@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "case/outline.hpp"
+#include "case/overlay.hpp"
 #include "case/sections.hpp"
 #include "particles/geometry.hpp"
 #include "simulation/particle_setup.hpp"

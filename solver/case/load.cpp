@@ -104,6 +104,7 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   if (!faults.empty()) throw ConfigError(name_origins(faults.all(), applied));
   for (Fault& warning : find_warnings(out.value)) out.warnings.push_back(std::move(warning));
   use_local_coordinates(out.value);
+  trim_slide(out.value.model, origins, out.warnings);
   out.warnings = name_origins(std::move(out.warnings), applied);
   out.hash = case_hash(out.resolved);
   Json endless = out.resolved;

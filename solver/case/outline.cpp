@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "case/overlay.hpp"
 #include "particles/geometry.hpp"
 #include "particles/ground.hpp"
 #include "particles/polygon.hpp"
@@ -77,12 +78,6 @@ std::optional<EdgePair> self_intersection(std::span<const Vec2> vertices, bool c
   return {};
 }
 
-double shared_area(std::span<const Vec2> a, std::span<const Vec2> b) {
-  Polygons shared;
-  bg::intersection(to_polygon(a), to_polygon(b), shared);
-  return bg::area(shared);
-}
-
 std::vector<std::vector<Vec2>> between_surfaces(std::span<const Vec2> ground, std::span<const Vec2> slip) {
   Box box{ground[0], ground[0]};
   for (const auto& surface : {ground, slip})
@@ -126,9 +121,10 @@ Penetration reach_outside_ring(std::span<const Vec2> outline, std::span<const Ve
   for (const Vec2& p : body.outer()) compare(p, -ring_edge.nearest(p).distance);
   for (const Vec2& p : inside.outer()) compare(p, body_edge.nearest(p).distance);
   // A wall that stands right across the outline has no vertex in it: its thickness, 2 area / perimeter, counts.
-  Polygons outside;
-  bg::difference(body, inside, outside);
-  for (const Polygon& piece : outside) compare(piece.outer().front(), 2.0 * bg::area(piece) / bg::perimeter(piece));
+  for (const auto& piece : pieces_outside(body.outer(), inside.outer()).value_or(Pieces{})) {
+    const double perimeter = Polyline{piece, true}.length();
+    compare(piece.front(), 2.0 * area(piece) / perimeter);
+  }
   return worst;
 }
 

@@ -18,9 +18,6 @@ struct EdgePair {
 /// The first pair of edges that cross, touch or fold back on one another; neighbours may share their vertex.
 std::optional<EdgePair> self_intersection(std::span<const Vec2> vertices, bool closed);
 
-/// Area that two outlines share. [m2]
-double shared_area(std::span<const Vec2> a, std::span<const Vec2> b);
-
 /// The soil between a ground surface and a slip surface below it: one outline for each connected piece of
 /// { slip < y < ground }, counter-clockwise from its leftmost vertex. Both surfaces run left to right.
 std::vector<std::vector<Vec2>> between_surfaces(std::span<const Vec2> ground, std::span<const Vec2> slip);

@@ -73,6 +73,14 @@ void check_choices(const Case& c, Faults& faults);
 /// Legal input that is often a mistake: an open end within reach, a wall lower than the slide, a coarse time step.
 std::vector<Fault> find_warnings(const Case& c);
 
+// trim.cpp
+/// Cuts off the outlines what lies in the ground or in an outline before, and leaves out films: stretches thinner than
+/// half a particle spacing, with 10 spacings of soil or more. Warns of each cut above 0.1 % of an outline and of each
+/// film.
+/// @param model  checked, in local coordinates; returns the mass of the films in left_out
+/// @throws ConfigError when less than one particle is left, or an outline cannot be cut
+void trim_slide(Model& model, const SourceLocations& origins, std::vector<Fault>& warnings);
+
 // unlikely_values.cpp
 /// Warnings of values in the allowed range that no soil has, with the unit that was probably meant.
 void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings);

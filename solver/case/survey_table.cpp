@@ -14,6 +14,10 @@ using Names = std::span<const std::string_view>;
 constexpr std::string_view distance_names[] = {"x", "distance", "chainage", "station", "offset"};
 constexpr std::string_view elevation_names[] = {"y", "z", "elevation", "height"};
 constexpr std::string_view other_units[] = {"mm", "cm", "dm", "km", "ft", "feet", "in", "inch", "yd", "mi", "miles"};
+constexpr std::string_view feet[] = {"ft", "feet"};
+constexpr std::string_view no_elevations[] = {"depth",      "depths", "thickness", "cover",
+                                              "overburden", "below",  "bgl",       "mbgl"};
+constexpr std::string_view metres[] = {"m", "metre", "metres", "meter", "meters"};
 constexpr const char* names_allowed =
     "distance: x, distance, chainage, station or offset; elevation: y, z, elevation or height";
 
@@ -87,18 +91,41 @@ std::optional<char> find_separator(const std::vector<Line>& lines) {
   return best;
 }
 
+/// Words of letters and digits, in lower case; at least one, which may be empty.
+std::vector<std::string> words_of(std::string_view text) {
+  std::vector<std::string> words(1);
+  for (const char c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || (static_cast<unsigned char>(c) & 0x80U) != 0)
+      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    else if (!words.back().empty())
+      words.emplace_back();
+  }
+  if (words.size() > 1 && words.back().empty()) words.pop_back();
+  return words;
+}
+
+/// The first of the words that is among the names, or "".
+std::string first_of(const std::vector<std::string>& words, Names names) {
+  const auto found = std::ranges::find_if(words, [&](const std::string& word) { return contains(names, word); });
+  return found == words.end() ? "" : *found;
+}
+
+/// The unit other than metres that a heading names, or "". "in" is a unit only at the end; x' may be feet.
+std::string other_unit(std::string_view cell) {
+  std::vector<std::string> words = words_of(cell);
+  if (cell.ends_with('\'')) return "feet (')";
+  const bool inches = words.back() == "in";
+  std::erase(words, "in");
+  const std::string unit = first_of(words, other_units);
+  return unit.empty() && inches ? "in" : unit;
+}
+
 /// A heading such as "Elevation (m)" or chainage_m: its name in lower case and its unit.
 struct Heading {
   std::string name, unit;
 
   explicit Heading(std::string_view cell) {
-    std::vector<std::string> words(1);
-    for (const char c : cell) {
-      if (std::isalnum(static_cast<unsigned char>(c)) != 0 || (static_cast<unsigned char>(c) & 0x80U) != 0)
-        words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-      else if (!words.back().empty())
-        words.emplace_back();
-    }
+    const std::vector<std::string> words = words_of(cell);
     name = words.front();
     unit = words.size() > 1 ? words[1] : "";
     const bool bracketed = cell.find_first_of("([") != std::string_view::npos;
@@ -147,21 +174,37 @@ struct Table {
   std::vector<std::string> cells(std::size_t k) const { return cells_of(lines[k].text, separator); }
 };
 
-/// Refuses columns in another unit than metres: in a heading, or in a line of units beneath it.
-bool refuse_other_units(const Table& table, Columns columns, LineFaults& found) {
+/// Refuses what is not in metres, or no elevation: by a heading, a line of units beneath it, or a title.
+bool refuse_headings(const Table& table, Columns columns, LineFaults& found) {
+  const auto refuse = [&](std::size_t k, const std::string& message) {
+    found.add("heading", table.lines[k].number, message);
+    return true;
+  };
   for (std::size_t k = 0; k < table.first_row; ++k) {
-    const std::vector<std::string> cells = table.cells(k);
+    const std::vector<std::string> cells = table.cells(k), words = words_of(table.lines[k].text);
     for (const std::size_t c : {columns.x, columns.y}) {
       if (c >= cells.size() || cells.size() < 2) continue;
-      const Heading heading(cells[c]);
-      const std::string& unit = contains(other_units, heading.name) ? heading.name : heading.unit;
-      if (!contains(other_units, unit)) continue;
-      found.add("unit", table.lines[k].number,
-                "column " + in_quotes(cells[c]) + " is in " + unit + "; metres are needed");
-      return true;
+      const std::string unit = other_unit(cells[c]);
+      if (!unit.empty()) return refuse(k, "column " + in_quotes(cells[c]) + " is in " + unit + "; metres are needed");
     }
+    if (!first_of(words, feet).empty() && first_of(words, metres).empty())
+      return refuse(k, in_quotes(table.lines[k].text) + " names feet; metres are needed");
+    if (columns.y < cells.size() && cells.size() >= 2 && !first_of(words_of(cells[columns.y]), no_elevations).empty())
+      return refuse(k, "column " + in_quotes(cells[columns.y]) +
+                           " is a depth or a thickness; the elevation is needed, upwards in metres");
   }
   return false;
+}
+
+/// What a file without a row of two numbers holds in its first line that has a digit.
+std::string no_rows_message(const std::vector<Line>& lines) {
+  const std::string message =
+      "has no row of two numbers, distance and elevation in metres, separated by comma, semicolon, tab or blanks";
+  const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
+  const auto line =
+      std::ranges::find_if(lines, [&](const Line& l) { return !l.comment && std::ranges::any_of(l.text, is_digit); });
+  if (line == lines.end()) return message;
+  return message + "; line " + std::to_string(line->number) + " reads " + in_quotes(line->text);
 }
 
 /// The two columns, or nothing and a fault.
@@ -194,7 +237,7 @@ std::optional<Columns> choose_columns(const Table& table, LineFaults& found) {
                   (table.separator == ',' ? "); decimal commas need another separator than a comma" : ")"));
     return {};
   }
-  if (refuse_other_units(table, columns, found)) return {};
+  if (refuse_headings(table, columns, found)) return {};
   return columns;
 }
 
@@ -230,7 +273,7 @@ SurveyTable read_survey_table(std::string_view text, std::size_t most, LineFault
   Table table{',', lines_of(text, most + most_headings)};
   const std::optional<char> separator = find_separator(table.lines);
   if (!separator) {
-    found.add("empty", 0, "has no row of two numbers: distance and elevation in metres");
+    found.add("empty", 0, no_rows_message(table.lines));
     return {};
   }
   table.separator = *separator;

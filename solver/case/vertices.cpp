@@ -161,15 +161,23 @@ Vertices read_csv(std::string_view text, const std::string& name, Faults& faults
   LineFaults found(name);
   const SurveyTable table = read_survey_table(decoded(text), most_vertices + 1, found);
   out.form = table.form;
+  std::size_t repeated = 0;
   for (const SurveyRow& row : table.rows) {
     const auto x = read_coordinate(row.x, false, row.line, found);
     const auto y = x ? read_coordinate(row.y, true, row.line, found) : std::nullopt;
     if (!y) continue;
+    if (!out.points.empty() && out.points.back() == Vec2{*x, *y}) {  // a point that was surveyed twice
+      ++repeated;
+      continue;
+    }
     out.points.push_back({*x, *y});
     out.lines.push_back(row.line);
   }
+  if (repeated > 0)
+    out.form +=
+        ", " + std::to_string(repeated) + (repeated == 1 ? " repeated point" : " repeated points") + " left out";
   found.report(faults);
-  if (out.points.size() > most_vertices)
+  if (table.rows.size() > most_vertices)
     faults.add(name, "has more than " + std::to_string(most_vertices) + " vertices");
   return out;
 }

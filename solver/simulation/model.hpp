@@ -33,6 +33,7 @@ struct Model {
   std::vector<Boundary> boundaries;  ///< at least one: the ground_line() of the terrain
   std::vector<SlidePart> slide;
   std::vector<Material> materials;  ///< at least one
+  double left_out = 0.0;            ///< mass of films that the outlines held, too thin for particles [kg/m]
   double dx = 0.1;                  ///< particle spacing [m], > 0
   Placement placement = Placement::cells;
   Vec2 g{0.0, -9.81};  ///< gravity [m/s2]

@@ -161,7 +161,7 @@ RunResult Simulation::result() const {
   r.penetrated = contact_.lost();
   r.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
   r.at_rest = at_rest();
-  r.mass = {total_mass(soil_), mass_of(model_.slide, model_.materials)};
+  r.mass = {total_mass(soil_), mass_of(model_.slide, model_.materials) + model_.left_out};
   r.digest = digest(soil_);
   r.backend = backend();
   r.simd = simd();

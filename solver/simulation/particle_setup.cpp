@@ -39,7 +39,7 @@ double particle_mass(const Model& model, const SoilPoint& point) {
 }
 
 SlideMass slide_mass(const Model& model, const ParticlePlan& plan) {
-  SlideMass mass{0.0, mass_of(model.slide, model.materials)};
+  SlideMass mass{0.0, mass_of(model.slide, model.materials) + model.left_out};
   for (const SoilPoint& point : plan.soil) mass.filled += particle_mass(model, point);
   return mass;
 }

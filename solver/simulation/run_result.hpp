@@ -23,7 +23,7 @@ struct FieldSummary {
 /// What the particles carry of the soil of a case, per metre of width.
 struct SlideMass {
   double filled = 0.0;   ///< sum over the particles [kg/m]; 0: not recorded
-  double outline = 0.0;  ///< sum of density x area of the outlines [kg/m]; 0: not recorded
+  double outline = 0.0;  ///< sum of density x area of the outlines above the ground [kg/m]; 0: not recorded
 };
 
 /// Why a run ended.

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "case/outline.hpp"
+#include "case/overlay.hpp"
 #include "particles/geometry.hpp"
 
 namespace talus {

@@ -88,8 +88,47 @@ TEST(ReadCsv, HasOneFaultForAllLinesOfAKind) {
   EXPECT_EQ(complaint("0,1\n2,3\nx,y\n"), "f.csv:3: \"x\" is not a number") << "a header comes before the numbers";
   EXPECT_EQ(complaint("0,a\n1,2\n3,4\n"), "f.csv:1: \"a\" is not a number") << "a row with one number is no header";
   EXPECT_EQ(complaint("0,1\n\"2,3\n4,5\n"), "f.csv:2: has a quotation mark that is not closed");
-  EXPECT_EQ(complaint("a,b\n"), "f.csv: has no row of two numbers: distance and elevation in metres");
-  EXPECT_EQ(complaint(""), "f.csv: has no row of two numbers: distance and elevation in metres");
+}
+
+TEST(ReadCsv, NamesTheFirstLineWhereNoRowHasTwoNumbers) {
+  const std::string none =
+      "f.csv: has no row of two numbers, distance and elevation in metres, separated by comma, semicolon, tab or "
+      "blanks";
+  EXPECT_EQ(complaint("a,b\n"), none);
+  EXPECT_EQ(complaint(""), none);
+  EXPECT_EQ(complaint("x|y\n0|20\n10|15\n"), none + "; line 2 reads \"0|20\"");
+  EXPECT_EQ(complaint("# 2021\nstation,elevation\n0+000.00,20\n"), none + "; line 3 reads \"0+000.00,20\"");
+}
+
+TEST(ReadCsv, RefusesFeetHoweverTheyAreNamed) {
+  const auto refused = [](const std::string& header) {
+    return complaint(header + "\n0,20\n60,5\n").find("; metres are needed") != std::string::npos;
+  };
+  for (const char* header :
+       {"Station (US survey ft),Elev (US survey ft)", "x,Elevation in US survey feet", "x',y'", "x,height (in)",
+        "All dimensions in feet\nx,y", "# Elevations: US ft\nx,y", "x_ft,y_m", "Station,Elevation\n[m],[ft]"})
+    EXPECT_TRUE(refused(header)) << header;
+  for (const char* header :
+       {"x (m),Elevation in m", "Foot of the slope\nx,y", "Converted from feet to metres\nx,y", "Elevations in m\nx,y"})
+    EXPECT_EQ(complaint(std::string(header) + "\n0,20\n60,5\n"), "") << header;
+}
+
+TEST(ReadCsv, RefusesDepths) {
+  const auto message = [](const std::string& column) {
+    return "f.csv:1: column \"" + column + "\" is a depth or a thickness; the elevation is needed, upwards in metres";
+  };
+  for (const char* column : {"depth", "Depth (m)", "depth_below_ground_m", "height_of_cover", "height (m bgl)"})
+    EXPECT_EQ(complaint("chainage," + std::string(column) + "\n0,20\n10,15\n"), message(column));
+  EXPECT_EQ(complaint("x,elevation,depth\n0,20,1\n10,15,2\n"), "") << "a depth beside the elevation";
+}
+
+TEST(ReadCsv, LeavesARepeatedPointOut) {
+  Faults faults;
+  const Vertices v = read_csv("x,y\n0,20\n10,15\n10,15\n10,15\n10,5\n20,5\n10,15\n", "f.csv", faults);
+  EXPECT_TRUE(faults.empty());
+  EXPECT_EQ(v.points, (std::vector<Vec2>{{0, 20}, {10, 15}, {10, 5}, {20, 5}, {10, 15}})) << "only one after the other";
+  EXPECT_EQ(v.lines, (std::vector<int>{2, 3, 6, 7, 8}));
+  EXPECT_EQ(v.form, "columns \"x\" and \"y\", separated by commas, 2 repeated points left out");
 }
 
 TEST(ReadCsv, RefusesColumnsThatItCannotTell) {
