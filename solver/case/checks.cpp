@@ -108,6 +108,28 @@ void warn_of_open_ends(const Model& model, std::vector<Fault>& warnings) {
         {"/terrain/wall_top_m", "is lower than the slide's highest point; soil may spill over the wall and is lost"});
 }
 
+/// Keys that the choices of sampler and truncation leave unused. A resolved case names every key, so only a value other
+/// than the default shows that it was meant.
+void warn_of_unused_keys(const FieldSpec& f, std::vector<Fault>& warnings) {
+  const FieldSpec defaults;
+  const bool expanded = f.sampler == FieldSampler::karhunen_loeve;
+  const bool by_share = expanded && f.truncation == Truncation::variance_share;
+  const bool by_terms = expanded && f.truncation != Truncation::variance_share;
+  const auto check_used = [&](const char* key, bool changed, bool used) {
+    if (!changed || used) return;
+    warnings.push_back({std::string("/random_field/") + key,
+                        !expanded  ? "is not used: sampler is circulant_embedding, which truncates nothing"
+                        : by_share ? "is not used: truncation is variance_share"
+                                   : "is not used: truncation is not variance_share"});
+  };
+  check_used("terms", f.terms != defaults.terms, by_terms);
+  check_used("variance_share", f.variance_share != defaults.variance_share, by_share);
+  check_used("truncation", f.truncation != defaults.truncation, expanded);
+  check_used("root_intervals", f.root_intervals != defaults.root_intervals, expanded);
+  if (f.grid_spacing && expanded)
+    warnings.push_back({"/random_field/grid_spacing_m", "is not used: sampler is karhunen_loeve"});
+}
+
 }  // namespace
 
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults) {
@@ -125,7 +147,7 @@ void check_choices(const Case& c, Faults& faults) {
                                     " layers do not fill the kernel's support; smoothing_ratio " +
                                     to_text(c.model.numerics.h_over_dx) + " needs " + to_text(std::ceil(reach)));
   if (!c.field) return;
-  if (!c.field->mu)
+  if (!c.field->mu && !c.field->mean)
     for (const Material& m : c.model.materials)
       if (m.phi <= 0.0)
         faults.add("/random_field",
@@ -143,6 +165,7 @@ std::vector<Fault> find_warnings(const Case& c) {
   warn_of_unlikely_values(model, warnings);
   if (!model.terrain.closed) warn_of_overhangs(model.terrain, warnings);
   if (!model.terrain.closed) warn_of_open_ends(model, warnings);
+  if (c.field) warn_of_unused_keys(*c.field, warnings);
   if (model.numerics.precision == Precision::full)
     warnings.push_back(
         {"/numerics/precision",

@@ -53,17 +53,21 @@ void read_correlation(ObjectReader& in, FieldSpec& spec) {
 /// Either the mean and standard deviation of ln(tan phi), or the mean and coefficient of variation of tan(phi). Without
 /// a mean the median is that of the material.
 void read_marginal(ObjectReader& in, FieldSpec& spec) {
-  std::optional<double> mean, stdev, cov;
+  std::optional<double> stdev, cov;
   in.optional_number("log_mean", spec.mu, {"", -20.0, 5.0},
                      {"Mean of ln(tan phi): the logarithm of the median.", "[Z20] Eq. 12, Table 4",
                       "ln(tan phi) of each particle's material"});
-  in.optional_number("mean_tan_phi", mean, {"", 0.0, 100.0, true},
-                     {"Mean of tan(phi) itself.", "laboratory", "none: the median is that of the material"});
+  in.optional_number("mean_tan_phi", spec.mean, {"", 0.0, 100.0, true},
+                     {"Mean of tan(phi) itself, which the field has at every particle whatever its truncation and "
+                      "averaging.",
+                      "laboratory", "none: the median is that of the material"});
   in.optional_number("log_stdev", stdev, log_stdev_range,
                      {"Standard deviation of ln(tan phi); a negative one mirrors the draws, as [Z20] prints it.",
                       "[Z20] Eq. 12, Table 4", "none"});
   in.optional_number("cov_tan_phi", cov, cov_range,
-                     {"Coefficient of variation of tan(phi) itself.", "laboratory; 0.05 to 0.4 in soils", "none"});
+                     {"Coefficient of variation of tan(phi) itself, of the whole field; truncation and averaging leave "
+                      "less, which result.json states.",
+                      "laboratory; 0.05 to 0.4 in soils", "none"});
   in.one_form({{{"log_stdev"}, {"log_mean"}}, {{"cov_tan_phi"}, {"mean_tan_phi"}}});
   const auto given = [&](const char* key) { return in.find(key) != nullptr; };
   const bool log_form = given("log_stdev") || given("log_mean");
@@ -78,10 +82,7 @@ void read_marginal(ObjectReader& in, FieldSpec& spec) {
     in.fault("log_stdev", "is missing; " + log_stdev_range.describe());
   }
   spec.sigma = stdev.value_or(spec.sigma);
-  if (!cov) return;
-  const LogParameters log = log_parameters({mean.value_or(1.0), *cov});
-  spec.sigma = log.sigma;
-  if (mean) spec.mu = log.mu;
+  if (cov) spec.sigma = log_stdev(*cov);
 }
 
 void read_domain(ObjectReader& in, std::optional<Box>& domain) {
@@ -108,17 +109,18 @@ void read_field(ObjectReader& in, FieldSpec& spec) {
   read_marginal(in, spec);
   in.choice("direction", spec.direction, directions, {"Axes along which the field varies.", "[Z20] Eqs. 11, 23"});
   in.choice("sampler", spec.sampler, samplers,
-            {"karhunen_loeve: truncated expansion; circulant_embedding: the full variance on a grid.",
+            {"karhunen_loeve: truncated expansion; circulant_embedding: the full variance, on a grid.",
              "[Z20] Eq. 11; Dietrich & Newsam 1997"});
   in.choice(
       "truncation", spec.truncation, truncations,
       {"Modes kept. largest: the terms modes of the largest eigenvalue products; diagonal: the first terms pairs of "
        "equal index; variance_share: as many as reach variance_share.",
        "[Z20] Eq. 11"});
-  in.integer("terms", spec.terms, {"", 1.0, 1e6},
-             {"Number of modes M for truncation largest and diagonal.", "[Z20] section 3"});
+  in.integer(
+      "terms", spec.terms, {"", 1.0, 1e6},
+      {"Number of modes M for truncation largest and diagonal; unused otherwise, with a warning.", "[Z20] section 3"});
   in.number("variance_share", spec.variance_share, {"", 0.0, 1.0, true, true},
-            {"Share of the variance to reach with truncation variance_share."});
+            {"Share of the variance to reach with truncation variance_share; unused otherwise, with a warning."});
   in.choice("root_intervals", spec.root_intervals, intervals,
             {"complete: every mode once; paper: the printed intervals, which skip every other mode.",
              "[Z20] Eqs. 15, 21 for paper"});
@@ -129,9 +131,9 @@ void read_field(ObjectReader& in, FieldSpec& spec) {
       "xi", spec.xi, {"", -40.0, 40.0}, {0, 1'000'000},
       {"Standard normal coefficients to use instead of drawn ones, one per mode; empty: drawn.", "[Z20] Table 2"});
   in.optional_number("grid_spacing_m", spec.grid_spacing, length,
-                     {"Grid of the circulant embedding.", "numerical",
-                      "half of particle_spacing_m, or its largest whole fraction up to a quarter of the shortest "
-                      "correlation length"});
+                     {"Grid of the circulant embedding. It does not depend on the particle spacing, and a realization "
+                      "is the same field at every spacing. Particles take the value of the nearest node.",
+                      "numerical", "a tenth of the correlation length along each axis"});
 }
 
 void read_study(ObjectReader& in, StudySpec& s) {

@@ -83,9 +83,10 @@ void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t see
                 static_cast<long long>(r.left_domain));
   if (r.field.terms > 0)
     std::printf(
-        "random field              %10lld terms, %.1f %% of the variance, mean friction angle %.2f deg, seed %llu\n",
+        "random field              %10lld terms, %.1f %% of the variance, mean friction angle %.2f deg, seed %llu\n"
+        "COV of tan(phi)           %10.3g\n",
         static_cast<long long>(r.field.terms), 100.0 * r.field.captured_variance, degrees(r.field.mean_phi),
-        static_cast<unsigned long long>(seed));
+        static_cast<unsigned long long>(seed), r.field.cov);
   std::printf("wall clock                %10.2f s   on %d thread%s\ndigest                    %s\n", r.wall_clock,
               r.threads, r.threads == 1 ? "" : "s", r.digest.c_str());
 }

@@ -12,7 +12,7 @@
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "particles/geometry.hpp"
-#include "random_field/random_field.hpp"
+#include "run/realization.hpp"
 #include "run/warnings.hpp"
 #include "simulation/simulation.hpp"
 #include "support/json.hpp"
@@ -34,8 +34,7 @@ struct Demand {
   double step = 0.0;  ///< [s]
   double steps = 0.0;
   double memory = 0.0;  ///< [bytes]
-  std::optional<double> captured_variance;
-  std::size_t field_terms = 0;
+  std::optional<FieldSummary> field;
   std::vector<Fault> warnings;
 };
 
@@ -50,12 +49,9 @@ Demand measure(const Case& c) {
   d.memory = run_memory(static_cast<double>(d.soil + d.wall));
   if (c.field) {
     const RandomField field(*c.field, bounding_box(c.model.slide), c.model.dx);
-    d.captured_variance = field.captured_variance();
-    d.field_terms = field.terms();
+    d.field = field_summary(*c.field, field);
   }
-  d.warnings = warnings_before_run(
-      c, plan,
-      {.captured_variance = d.captured_variance.value_or(1.0), .terms = static_cast<std::int64_t>(d.field_terms)});
+  d.warnings = warnings_before_run(c, plan, d.field.value_or(FieldSummary{}));
   return d;
 }
 
@@ -112,7 +108,9 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
   out["files"] = loaded.files;
   out["ground"] = to_json(report, model.terrain);
   out["slide"] = slide_json(report, model);
-  if (d.captured_variance) out["field"] = {{"terms", d.field_terms}, {"captured_variance", *d.captured_variance}};
+  if (d.field)
+    out["field"] = {
+        {"terms", d.field->terms}, {"captured_variance", d.field->captured_variance}, {"cov_tan_phi", d.field->cov}};
   out["warnings"] = to_json(loaded.warnings);
   return out;
 }
@@ -153,8 +151,9 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
               loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");
   std::printf("steps              about %.0f to %.4g s\n", d.steps, loaded.value.model.time.end);
   std::printf("memory             about %.0f MB\n", d.memory / 1e6);
-  if (d.captured_variance)
-    std::printf("captured variance  %.2f %% with %zu terms\n", 100.0 * *d.captured_variance, d.field_terms);
+  if (d.field)
+    std::printf("captured variance  %.2f %% with %lld terms; coefficient of variation of tan(phi) %.3g\n",
+                100.0 * d.field->captured_variance, static_cast<long long>(d.field->terms), d.field->cov);
   std::printf("case hash          %s\n", loaded.hash.c_str());
   print_warnings(loaded.warnings);
 }

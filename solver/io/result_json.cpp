@@ -207,6 +207,7 @@ void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
   ObjectIo field = root.object("field");
   double mean_phi_deg = degrees(result.field.mean_phi);
   field.number("captured_variance", result.field.captured_variance, 0.0);
+  if (field.has("cov_tan_phi")) field.number("cov_tan_phi", result.field.cov, 0.0);
   field.number("mean_friction_angle_deg", mean_phi_deg, 0.0);
   field.integer("terms", result.field.terms);
   result.field.mean_phi = radians(mean_phi_deg);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numeric>
 #include <sstream>
 #include <unsupported/Eigen/FFT>
 
@@ -11,8 +12,8 @@
 namespace talus {
 namespace {
 
-constexpr double clip_tolerance = 1e-8;  // largest error of the covariance, relative to C(0), that clipping may make
-constexpr double rounding = 1e-9;        // parts of a spacing that count as rounding
+// Parts of a spacing that count as rounding: a point halfway between two nodes, to this tolerance, takes the upper one.
+constexpr double rounding = 1e-6;
 
 using Spectrum = std::vector<std::complex<double>>;
 
@@ -37,33 +38,38 @@ std::vector<double> eigenvalues(const ExponentialCovariance& covariance, double 
   return eigen;
 }
 
-/// By how much setting negative eigenvalues to zero can change the covariance, relative to C(0) (its mean eigenvalue).
-double clipping_error(const std::vector<double>& eigen) {
-  double negative = 0, all = 0;
-  for (double value : eigen) {
-    negative += std::max(-value, 0.0);
-    all += value;
-  }
-  return negative / all;
+double spacing_along(const FieldSpec& spec, double ell) { return spec.grid_spacing.value_or(grid_fraction * ell); }
+
+double whole_intervals(double length, double spacing) { return std::max(1.0, std::ceil(length / spacing - rounding)); }
+
+/// The spacing u^-1 from which on (x u + 1) (y u + 1) nodes are at most n, for a domain of x by y.
+double spacing_that_fits(double x, double y, double n) {
+  const double b = x + y;
+  return (b + std::sqrt(b * b + 4 * x * y * (n - 1))) / (2 * (n - 1));
 }
 
-double default_spacing(const FieldSpec& spec, double dx) {
-  const double ell = !spec.along_y() ? spec.ell_x : !spec.along_x() ? spec.ell_y : std::min(spec.ell_x, spec.ell_y);
-  return dx / (2 * std::max(1.0, std::ceil(2 * dx / ell)));
-}
-
-void check_size(double nodes) {
-  if (nodes <= max_grid) return;
+/// Refuses a domain that takes too many coefficients: twice as many as intervals along each axis.
+void check_size(const FieldSpec& spec, Box domain) {
+  const double x = spec.along_x() ? domain.width() : 0.0, y = spec.along_y() ? domain.height() : 0.0;
+  const double along_x = spec.along_x() ? 2 * whole_intervals(x, spacing_along(spec, spec.ell_x)) : 1.0;
+  const double along_y = spec.along_y() ? 2 * whole_intervals(y, spacing_along(spec, spec.ell_y)) : 1.0;
+  if (along_x * along_y <= max_grid) return;
+  const double fits = spacing_that_fits(x, y, max_grid / (spec.direction == FieldDirection::xy ? 4 : 2));
   std::ostringstream text;
-  text << "the grid takes at least " << nodes << " coefficients, more than " << max_grid << "; give a larger spacing";
+  text.precision(2);
+  text << (spec.grid_spacing ? "" : "is missing, and the default, a tenth of the correlation length, ") << "makes "
+       << along_x * along_y << " coefficients, more than " << max_grid << "; a spacing from " << 1.05 * fits
+       << " m on fits";
   throw ConfigError("/random_field/grid_spacing_m", text.str());
 }
 
-CirculantAxis axis(double lo, double hi, double ell, bool varies, const FieldSpec& spec, double dx, double anchor) {
-  if (!varies) return CirculantAxis::constant();
-  const double spacing = spec.grid_spacing.value_or(default_spacing(spec, dx));
-  const double first = anchor + std::floor((lo - anchor) / spacing + rounding) * spacing;
-  return {first, hi, spacing, {ell, spec.cell_average ? dx : 0.0}};
+CirculantAxis axis(const FieldSpec& spec, Box domain, double dx, bool horizontal) {
+  if (!(horizontal ? spec.along_x() : spec.along_y())) return CirculantAxis::constant();
+  check_size(spec, domain);
+  const ExponentialCovariance covariance{horizontal ? spec.ell_x : spec.ell_y, spec.cell_average ? dx : 0.0};
+  const double spacing = spacing_along(spec, covariance.ell);
+  return horizontal ? CirculantAxis(domain.lo.x, domain.hi.x, spacing, covariance)
+                    : CirculantAxis(domain.lo.y, domain.hi.y, spacing, covariance);
 }
 
 }  // namespace
@@ -83,22 +89,13 @@ double ExponentialCovariance::operator()(double d) const {
   return (ell / h) * (ell / h) * (straight + curved);
 }
 
-// The exponential covariance is convex, so the smallest embedding is nonnegative definite (Dietrich & Newsam 1997). The
-// averaged one is not; there the period grows until the kink at half of it has faded.
+// The exponential covariance is convex, so the smallest embedding is nonnegative definite (Dietrich & Newsam 1997).
 CirculantAxis::CirculantAxis(double lo, double hi, double spacing, const ExponentialCovariance& covariance)
-    : lo_(lo), spacing_(spacing) {
-  const double intervals = std::max(1.0, std::ceil((hi - lo) / spacing - rounding));
-  check_size(2 * intervals);
-  nodes_ = static_cast<std::size_t>(intervals) + 1;
-  variance_ = covariance(0);
-  std::size_t period = fast_length(2 * (nodes_ - 1));
-  root_ = eigenvalues(covariance, spacing_, period);
-  while (clipping_error(root_) > clip_tolerance) {
-    if (2 * static_cast<double>(period) > max_grid)
-      throw ConfigError("/random_field/grid_spacing_m", "no embedding of the covariance is nonnegative definite");
-    period = fast_length(2 * period);
-    root_ = eigenvalues(covariance, spacing_, period);
-  }
+    : lo_(lo), spacing_(spacing), cell_(covariance.cell), variance_(covariance(0)) {
+  const ExponentialCovariance of_nodes{covariance.ell};
+  correlation_ = of_nodes(spacing);
+  nodes_ = static_cast<std::size_t>(whole_intervals(hi - lo, spacing)) + 1;
+  root_ = eigenvalues(of_nodes, spacing, fast_length(2 * (nodes_ - 1)));
   for (double& value : root_) value = std::sqrt(std::max(value, 0.0));
 }
 
@@ -113,19 +110,40 @@ void CirculantAxis::filter(std::span<double> row) const {
   fft.inv(row.data(), spectrum.data(), n);
 }
 
-CirculantAxis::Stencil CirculantAxis::stencil(double x) const {
-  if (nodes_ == 1) return {};
-  const double position = std::clamp((x - lo_) / spacing_, 0.0, static_cast<double>(nodes_ - 1));
-  const std::size_t left = std::min(static_cast<std::size_t>(position), nodes_ - 2);
-  const double t = position - static_cast<double>(left);
-  return {left, left + 1, 1 - t, t};
+std::size_t CirculantAxis::nearest_node(double x) const {
+  const double position = std::floor((x - lo_) / spacing_ + 0.5 + rounding);
+  return static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(nodes_ - 1)));
 }
 
-CirculantEmbedding::CirculantEmbedding(const FieldSpec& spec, Box domain, double dx, Vec2 anchor)
-    : x_(axis(domain.lo.x, domain.hi.x, spec.ell_x, spec.along_x(), spec, dx, anchor.x)),
-      y_(axis(domain.lo.y, domain.hi.y, spec.ell_y, spec.along_y(), spec, dx, anchor.y)) {
-  check_size(static_cast<double>(x_.period()) * static_cast<double>(y_.period()));
+/// sum_ij w_i w_j r^|i-j|, with r the correlation of neighbours.
+double CirculantAxis::variance_of(const Stencil& stencil) const {
+  double sum = 0, left = 0;  // left: sum over j < i of w_j r^(i-j)
+  for (double w : stencil.weights) {
+    sum += w * (w + 2 * left);
+    left = correlation_ * (left + w);
+  }
+  return sum;
 }
+
+CirculantAxis::Stencil CirculantAxis::stencil(double x) const {
+  if (nodes_ == 1) return {};
+  if (cell_ == 0) return {nearest_node(x), {1.0}};
+  const double lo = x - cell_ / 2, hi = x + cell_ / 2;
+  const std::size_t first = nearest_node(lo), last = nearest_node(hi);
+  Stencil stencil{first, std::vector<double>(last - first + 1)};
+  double from = lo;
+  for (std::size_t k = first; k <= last; ++k) {
+    const double to = k == last ? hi : lo_ + (static_cast<double>(k) + 0.5) * spacing_;
+    stencil.weights[k - first] = (to - from) / cell_;
+    from = to;
+  }
+  const double scale = std::sqrt(variance_ / variance_of(stencil));
+  for (double& w : stencil.weights) w *= scale;
+  return stencil;
+}
+
+CirculantEmbedding::CirculantEmbedding(const FieldSpec& spec, Box domain, double dx)
+    : x_(axis(spec, domain, dx, true)), y_(axis(spec, domain, dx, false)) {}
 
 /// Values on the nodes, x fastest: white noise filtered along x, then along y.
 std::vector<double> CirculantEmbedding::grid(std::span<const double> xi) const {
@@ -143,14 +161,16 @@ std::vector<double> CirculantEmbedding::grid(std::span<const double> xi) const {
 
 std::vector<double> CirculantEmbedding::gaussian(std::span<const Vec2> points, std::span<const double> xi) const {
   const std::vector<double> z = grid(xi);
-  const auto along_x = [&](const CirculantAxis::Stencil& s, std::size_t j) {
-    return s.left_weight * z[j * x_.nodes() + s.left] + s.right_weight * z[j * x_.nodes() + s.right];
-  };
   std::vector<double> values;
   values.reserve(points.size());
   for (Vec2 point : points) {
-    const auto sx = x_.stencil(point.x), sy = y_.stencil(point.y);
-    values.push_back(sy.left_weight * along_x(sx, sy.left) + sy.right_weight * along_x(sx, sy.right));
+    const auto along_x = x_.stencil(point.x), along_y = y_.stencil(point.y);
+    double sum = 0;
+    for (std::size_t j = 0; j < along_y.weights.size(); ++j) {
+      const double* row = z.data() + (along_y.first + j) * x_.nodes() + along_x.first;
+      sum += along_y.weights[j] * std::inner_product(along_x.weights.begin(), along_x.weights.end(), row, 0.0);
+    }
+    values.push_back(sum);
   }
   return values;
 }

@@ -17,21 +17,20 @@ enum class FieldSampler { karhunen_loeve, circulant_embedding };
 /// 11-23.
 struct FieldSpec {
   FieldDirection direction = FieldDirection::xy;
-  double ell_x = 1.0;             ///< correlation length along x [m], > 0 (half the scale of fluctuation)
-  double ell_y = 1.0;             ///< correlation length along y [m], > 0
-  std::optional<double> mu = {};  ///< mean of ln(tan phi) [-]; unset: ln(tan phi) of each particle's material
-  double sigma = 0.0;             ///< standard deviation of ln(tan phi) [-]; a negative one changes the sign of Z
+  double ell_x = 1.0;               ///< correlation length along x [m], > 0 (half the scale of fluctuation)
+  double ell_y = 1.0;               ///< correlation length along y [m], > 0
+  std::optional<double> mu = {};    ///< mean of ln(tan phi) [-]; unset: ln(tan phi) of each particle's material
+  std::optional<double> mean = {};  ///< mean of tan(phi) [-], > 0, in place of mu: mu follows from it at each point
+  double sigma = 0.0;               ///< standard deviation of ln(tan phi) [-]; a negative one changes the sign of Z
   FieldSampler sampler = FieldSampler::karhunen_loeve;
   Truncation truncation = Truncation::largest;
   int terms = 5;                 ///< M of [Z20] Eq. 11, >= 1; for `largest` and `diagonal`
   double variance_share = 0.95;  ///< for `variance_share`, in (0, 1)
   RootIntervals root_intervals = RootIntervals::complete;
-  bool cell_average = false;       ///< average the field over each particle's cell dx by dx
-  std::optional<Box> domain = {};  ///< where the modes are solved [m]; unset: the bounding box of the slide
-  std::vector<double> xi = {};     ///< given standard normal coefficients instead of drawn ones; empty: drawn
-  /// Grid of the circulant embedding [m]; unset: dx/2, or the largest whole fraction of it that is at most min(ell)/4.
-  /// The particles that fill a slide then lie on nodes.
-  std::optional<double> grid_spacing = {};
+  bool cell_average = false;                ///< average the field over each particle's cell dx by dx
+  std::optional<Box> domain = {};           ///< where the modes are solved [m]; unset: the bounding box of the slide
+  std::vector<double> xi = {};              ///< given standard normal coefficients instead of drawn ones; empty: drawn
+  std::optional<double> grid_spacing = {};  ///< of the circulant embedding [m]; unset: a tenth of ell along each axis
   bool along_x() const { return direction != FieldDirection::y; }  ///< whether the field varies along x
   bool along_y() const { return direction != FieldDirection::x; }
   bool operator==(const FieldSpec&) const = default;

@@ -28,6 +28,9 @@ std::vector<std::size_t> sorted(std::span<const Vec2> points) {
   return order;
 }
 
+double itself(double f) { return f; }
+double squared(double f) { return f * f; }
+
 }  // namespace
 
 KarhunenLoeve::KarhunenLoeve(const FieldSpec& spec, Box domain, double dx)
@@ -63,29 +66,30 @@ double KarhunenLoeve::variance() const {
   return sum / (x_.length() * y_.length());
 }
 
-std::vector<double> KarhunenLoeve::coefficients(std::span<const double> xi) const {
+std::vector<double> KarhunenLoeve::by_rows(const std::vector<double>& by_modes) const {
   std::vector<double> c(pairs_.size());
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const Row& row = rows_[pairs_[k].ix];
-    c[row.offset + pairs_[k].iy - row.first] = scale_[k] * xi[k];
+    c[row.offset + pairs_[k].iy - row.first] = by_modes[k];
   }
   return c;
 }
 
-/// g_j = sum_i c_ij f_i(x): what is left of the expansion at one x, a sum over y modes.
-void KarhunenLoeve::contract(double x, const std::vector<double>& coefficients, std::vector<double>& g) const {
+/// g_j = sum_i c_ij shape(f_i(x)): what is left of the expansion at one x, a sum over y modes.
+void KarhunenLoeve::contract(double x, Shape shape, const std::vector<double>& coefficients,
+                             std::vector<double>& g) const {
   g.assign(y_count_, 0.0);
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const Row& row = rows_[i];
-    const double f = x_.solved(i).value(x - x_.centre());
+    const double f = shape(x_.solved(i).value(x - x_.centre()));
     const double* c = coefficients.data() + row.offset;
     double* out = g.data() + row.first;
     for (std::size_t j = 0; j < row.count; ++j) out[j] += f * c[j];
   }
 }
 
-/// Z = sum_j g_j(x) f_j(y) at the points of one chunk; functions of x and y are tabled once per distinct coordinate.
-void KarhunenLoeve::evaluate(std::span<const Vec2> points, std::span<const std::size_t> chunk,
+/// sum_j g_j(x) shape(f_j(y)) at the points of one chunk; functions of x and y are tabled once per distinct coordinate.
+void KarhunenLoeve::evaluate(std::span<const Vec2> points, std::span<const std::size_t> chunk, Shape shape,
                              const std::vector<double>& coefficients, std::vector<double>& z) const {
   std::vector<double> ys;
   for (std::size_t i : chunk) ys.push_back(points[i].y);
@@ -93,25 +97,39 @@ void KarhunenLoeve::evaluate(std::span<const Vec2> points, std::span<const std::
   ys.erase(std::unique(ys.begin(), ys.end()), ys.end());
   std::vector<double> table(ys.size() * y_count_);
   for (std::size_t k = 0; k < ys.size(); ++k)
-    for (std::size_t j = 0; j < y_count_; ++j) table[k * y_count_ + j] = y_.solved(j).value(ys[k] - y_.centre());
+    for (std::size_t j = 0; j < y_count_; ++j) table[k * y_count_ + j] = shape(y_.solved(j).value(ys[k] - y_.centre()));
 
   std::vector<double> g;
   for (std::size_t n = 0; n < chunk.size(); ++n) {
     const Vec2 point = points[chunk[n]];
-    if (n == 0 || point.x != points[chunk[n - 1]].x) contract(point.x, coefficients, g);
+    if (n == 0 || point.x != points[chunk[n - 1]].x) contract(point.x, shape, coefficients, g);
     const auto k = static_cast<std::size_t>(std::lower_bound(ys.begin(), ys.end(), point.y) - ys.begin());
     z[chunk[n]] = std::inner_product(g.begin(), g.end(), table.data() + k * y_count_, 0.0);
   }
 }
 
-std::vector<double> KarhunenLoeve::gaussian(std::span<const Vec2> points, std::span<const double> xi) const {
+/// sum_k c_k shape(f_ix(x)) shape(f_iy(y)) at points.
+std::vector<double> KarhunenLoeve::expand(std::span<const Vec2> points, Shape shape,
+                                          const std::vector<double>& by_modes) const {
   constexpr std::size_t chunk_size = 1024;  // bounds the table of y functions
-  const std::vector<double> c = coefficients(xi);
+  const std::vector<double> c = by_rows(by_modes);
   const std::vector<std::size_t> order = sorted(points);
   std::vector<double> z(points.size());
   for (std::size_t start = 0; start < order.size(); start += chunk_size)
-    evaluate(points, std::span(order).subspan(start, std::min(chunk_size, order.size() - start)), c, z);
+    evaluate(points, std::span(order).subspan(start, std::min(chunk_size, order.size() - start)), shape, c, z);
   return z;
+}
+
+std::vector<double> KarhunenLoeve::gaussian(std::span<const Vec2> points, std::span<const double> xi) const {
+  std::vector<double> c(scale_);
+  for (std::size_t k = 0; k < c.size(); ++k) c[k] *= xi[k];
+  return expand(points, itself, c);
+}
+
+std::vector<double> KarhunenLoeve::variance(std::span<const Vec2> points) const {
+  std::vector<double> c(scale_);
+  for (double& scale : c) scale *= scale;
+  return expand(points, squared, c);
 }
 
 }  // namespace talus

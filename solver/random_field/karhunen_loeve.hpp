@@ -28,6 +28,9 @@ class KarhunenLoeve {
   /// The modes kept; xi[k] goes with pairs()[k].
   const std::vector<ModePair>& pairs() const { return pairs_; }
 
+  /// Variance of Z at points [-], shape of `points`: V = sum_k scale_k^2 f_k^2. Smaller than 1 by what truncation and
+  /// `cell_average` take away, and not the same everywhere.
+  std::vector<double> variance(std::span<const Vec2> points) const;
   /// Z at points, shape of `points` [-]. The value at a point depends on that point and xi alone, bit by bit.
   std::vector<double> gaussian(std::span<const Vec2> points, std::span<const double> xi) const;
 
@@ -38,11 +41,15 @@ class KarhunenLoeve {
     std::size_t first = 0, count = 0, offset = 0;
   };
 
+  /// What is made of the value of a mode: itself, or its square.
+  using Shape = double (*)(double);
+
   void build_rows();
-  std::vector<double> coefficients(std::span<const double> xi) const;
-  void contract(double x, const std::vector<double>& coefficients, std::vector<double>& g) const;
-  void evaluate(std::span<const Vec2> points, std::span<const std::size_t> chunk,
+  std::vector<double> by_rows(const std::vector<double>& by_modes) const;
+  void contract(double x, Shape shape, const std::vector<double>& coefficients, std::vector<double>& g) const;
+  void evaluate(std::span<const Vec2> points, std::span<const std::size_t> chunk, Shape shape,
                 const std::vector<double>& coefficients, std::vector<double>& z) const;
+  std::vector<double> expand(std::span<const Vec2> points, Shape shape, const std::vector<double>& by_modes) const;
 
   AxisModes x_, y_;
   std::vector<ModePair> pairs_;

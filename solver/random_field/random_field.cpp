@@ -19,7 +19,7 @@ Sampler make_sampler(const FieldSpec& spec, Box slide_box, double dx) {
   if (spec.along_x() && !(domain.width() > 0)) throw ConfigError("/random_field/domain_m", "has no extent along x");
   if (spec.along_y() && !(domain.height() > 0)) throw ConfigError("/random_field/domain_m", "has no extent along y");
   if (spec.sampler == FieldSampler::karhunen_loeve) return KarhunenLoeve(spec, domain, dx);
-  return CirculantEmbedding(spec, domain, dx, slide_box.lo);
+  return CirculantEmbedding(spec, domain, dx);
 }
 
 }  // namespace
@@ -52,9 +52,17 @@ std::vector<double> RandomField::gaussian(std::span<const Vec2> points, std::spa
   return std::visit([&](const auto& sampler) { return sampler.gaussian(points, xi); }, sampler_);
 }
 
-LogParameters log_parameters(Moments moments) {
-  const double variance = std::log1p(moments.cov * moments.cov);
-  return {.mu = std::log(moments.mean) - variance / 2, .sigma = std::sqrt(variance)};
+double log_stdev(double cov) { return std::sqrt(std::log1p(cov * cov)); }
+
+double coefficient_of_variation(double sigma, double variance) {
+  return std::sqrt(std::expm1(sigma * sigma * variance));
+}
+
+std::vector<double> log_medians(double mean, double sigma, std::span<const double> variance) {
+  std::vector<double> mu;
+  mu.reserve(variance.size());
+  for (double v : variance) mu.push_back(std::log(mean) - sigma * sigma * v / 2);
+  return mu;
 }
 
 std::vector<double> lognormal(std::span<const double> gaussian, std::span<const double> mu, double sigma) {

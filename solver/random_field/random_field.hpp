@@ -19,7 +19,7 @@ class RandomField {
  public:
   /// @param spec       what is asked for, within the ranges of its members; `spec.domain` overrides `slide_box`
   /// @param slide_box  bounding box of the slide [m]
-  /// @param dx      particle spacing [m], for `cell_average` and the default grid
+  /// @param dx         particle spacing [m], side of the cells that `cell_average` averages over
   /// @throws ConfigError (pointer under /random_field) when the domain has no extent or the embedding is impossible
   RandomField(const FieldSpec& spec, Box slide_box, double dx);
 
@@ -33,9 +33,13 @@ class RandomField {
     return std::visit([](const auto& s) { return s.captured_variance(); }, sampler_);
   }
   /// Variance of the values that gaussian() returns, averaged over the domain [-]: captured_variance() less what
-  /// `cell_average` takes away; circulant embedding: on the nodes of its grid.
+  /// `cell_average` takes away.
   double variance() const {
     return std::visit([](const auto& s) { return s.variance(); }, sampler_);
+  }
+  /// Variance of the values that gaussian() returns at points [-], shape of `points`. It takes as long as gaussian().
+  std::vector<double> variance(std::span<const Vec2> points) const {
+    return std::visit([&](const auto& s) { return s.variance(points); }, sampler_);
   }
   /// Coefficients of one realization: counter-based (Philox), keyed by (seed, realization, mode); never depend on
   /// anything else. With `spec.xi`, those.
@@ -45,7 +49,7 @@ class RandomField {
   std::vector<double> draw_stratified(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization,
                                       std::size_t modes) const;
   /// Z at points [-]; `xi` has terms() entries (else std::invalid_argument). Points outside the domain take the modes'
-  /// analytic continuation; with circulant embedding the value at the grid's nearest point. Safe to call from several
+  /// analytic continuation; with circulant embedding the value at the grid's nearest node. Safe to call from several
   /// threads at once.
   std::vector<double> gaussian(std::span<const Vec2> points, std::span<const double> xi) const;
 
@@ -54,21 +58,19 @@ class RandomField {
   std::vector<double> given_;  ///< coefficients that the specification gives; empty: drawn
 };
 
-/// Mean and standard deviation of the logarithm.
-struct LogParameters {
-  double mu;     ///< mean of ln(tan phi) [-]; exp(mu) is the median of tan(phi)
-  double sigma;  ///< standard deviation of ln(tan phi) [-], >= 0
-};
+/// Standard deviation of the logarithm of a lognormal quantity [-]: sigma^2 = ln(1 + COV^2). ([Z20] Table 4 calls
+/// sigma/|mu| the COV; that is another number.)
+/// @param cov  coefficient of variation, standard deviation / mean [-], >= 0
+double log_stdev(double cov);
 
-/// Mean and coefficient of variation of the quantity itself.
-struct Moments {
-  double mean;  ///< [-], > 0
-  double cov;   ///< standard deviation / mean [-], >= 0
-};
+/// Coefficient of variation of exp(mu + sigma Z) [-] for a Z of that variance: sqrt(exp(sigma^2 V) - 1).
+double coefficient_of_variation(double sigma, double variance);
 
-/// sigma^2 = ln(1 + COV^2), mu = ln(mean) - sigma^2/2. ([Z20] Table 4 calls sigma/|mu| the COV; that is another
-/// number.)
-LogParameters log_parameters(Moments moments);
+/// mu = ln(mean) - sigma^2 V / 2 at each point, so that exp(mu + sigma Z) has the mean asked for whatever the variance
+/// V of Z there: 1 for the whole field, less where it is truncated or averaged.
+/// @param mean      mean of tan(phi) [-], > 0
+/// @param variance  V at each point [-]
+std::vector<double> log_medians(double mean, double sigma, std::span<const double> variance);
 
 /// tan(phi) = exp(mu + sigma Z). [Z20] Eq. 12; mu is a value for every point, or one for all.
 std::vector<double> lognormal(std::span<const double> gaussian, std::span<const double> mu, double sigma);

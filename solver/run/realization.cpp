@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "random_field/random_field.hpp"
 #include "support/error.hpp"
@@ -22,7 +23,22 @@ std::vector<double> draw(const RandomField& field, const FieldSpec& spec, const 
                                static_cast<std::size_t>(study.stratified_modes));
 }
 
+/// ln of the median at each particle: from the mean where the case gives it, else its own, else the material's.
+std::vector<double> log_medians_at(const FieldSpec& spec, const RandomField& random, std::span<const Vec2> points,
+                                   std::span<const double> tan_phi) {
+  if (spec.mean) return log_medians(*spec.mean, spec.sigma, random.variance(points));
+  std::vector<double> mu;
+  for (const double median : tan_phi) mu.push_back(spec.mu.value_or(std::log(median)));
+  return mu;
+}
+
 }  // namespace
+
+FieldSummary field_summary(const FieldSpec& spec, const RandomField& field) {
+  return {.captured_variance = field.captured_variance(),
+          .cov = coefficient_of_variation(spec.sigma, field.variance()),
+          .terms = static_cast<std::int64_t>(field.terms())};
+}
 
 Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study,
                   const ParticlePlan& plan, const RunIdentity& identity) {
@@ -30,14 +46,12 @@ Strength strength(const Model& model, const std::optional<FieldSpec>& field, con
   std::vector<double>& tan_phi = result.properties.tan_phi;
   if (field) {
     std::vector<Vec2> points;
-    std::vector<double> mu;
     for (const SoilPoint& point : plan.soil) points.push_back(point.x);
-    for (const double median : tan_phi) mu.push_back(field->mu.value_or(std::log(median)));
     const RandomField random(*field, bounding_box(model.slide), model.dx);
     result.xi = draw(random, *field, study, identity);
+    const std::vector<double> mu = log_medians_at(*field, random, points, tan_phi);
     tan_phi = lognormal(random.gaussian(points, result.xi), mu, field->sigma);
-    result.summary.captured_variance = random.captured_variance();
-    result.summary.terms = static_cast<std::int64_t>(random.terms());
+    result.summary = field_summary(*field, random);
   }
   double sum = 0.0;
   for (double& value : tan_phi) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "random_field/field_spec.hpp"
+#include "random_field/random_field.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/run_result.hpp"
 #include "study/plan.hpp"
@@ -27,8 +27,13 @@ struct Strength {
   FieldSummary summary;
 };
 
+/// What is known of a field before anything is drawn: all of the summary but the mean friction angle.
+FieldSummary field_summary(const FieldSpec& spec, const RandomField& field);
+
 /// tan(phi) = exp(mu + sigma Z(x)) (1 + perturbation) where the case has a random field, tan(phi) of the material
-/// otherwise. [Z20] Eq. 12. With Latin hypercube sampling the draws depend on StudySpec::realizations, as they must.
+/// otherwise. [Z20] Eq. 12. Where the case gives the mean of tan(phi), mu at each particle is such that tan(phi) has
+/// this mean there (log_medians); the median run then has the median at each particle. With Latin hypercube sampling
+/// the draws depend on StudySpec::realizations, as they must.
 /// @throws ConfigError when the field cannot be built or the realization lies outside a Latin hypercube study
 Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study,
                   const ParticlePlan& plan, const RunIdentity& identity);

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "random_field/random_field.hpp"
+#include "run/realization.hpp"
 #include "simulation/checks.hpp"
 
 namespace talus {
@@ -49,8 +49,7 @@ std::vector<Fault> warnings_before_run(const Case& c) {
   FieldSummary summary;
   if (c.field) {
     const RandomField field(*c.field, bounding_box(c.model.slide), c.model.dx);
-    summary.captured_variance = field.captured_variance();
-    summary.terms = static_cast<std::int64_t>(field.terms());
+    summary = field_summary(*c.field, field);
   }
   return warnings_before_run(c, plan_particles(c.model), summary);
 }

@@ -12,9 +12,10 @@
 
 namespace talus {
 
-/// The random field of a run in three numbers.
+/// The random field of a run in four numbers.
 struct FieldSummary {
   double captured_variance = 0.0;  ///< share of the variance that the truncated expansion carries [-]
+  double cov = 0.0;                ///< coefficient of variation of tan(phi) that is drawn, from the mean variance [-]
   double mean_phi = 0.0;           ///< mean over the soil particles of the friction angle [rad]
   std::int64_t terms = 0;          ///< coefficients used
 };

@@ -141,5 +141,33 @@ TEST(Warnings, ALayerIsWarnedOfWhereItStands) {
   EXPECT_EQ(warning_of(layered).find("/slide/outlines/0/material/density_kg_m3: 19.4 kg/m3"), 0u);
 }
 
+TEST(Warnings, FieldKeysThatTheChoicesLeaveUnused) {
+  const auto unused = [](Json keys) {
+    Json section = {{"correlation_length_m", 1}, {"log_stdev", 0.1}};
+    section.update(keys);
+    std::string pointers;
+    for (const Fault& w : test::load(with("/random_field", section)).warnings) pointers += w.pointer + " ";
+    return pointers;
+  };
+  EXPECT_EQ(unused({{"terms", 9}}), "");
+  EXPECT_EQ(unused({{"truncation", "variance_share"}, {"variance_share", 0.9}}), "");
+  EXPECT_EQ(unused({{"truncation", "variance_share"}, {"terms", 9}}), "/random_field/terms ");
+  EXPECT_EQ(unused({{"truncation", "diagonal"}, {"variance_share", 0.9}}), "/random_field/variance_share ");
+  EXPECT_EQ(unused({{"grid_spacing_m", 0.1}}), "/random_field/grid_spacing_m ");
+  EXPECT_EQ(unused({{"sampler", "circulant_embedding"}, {"grid_spacing_m", 0.1}}), "");
+  EXPECT_EQ(unused({{"sampler", "circulant_embedding"},
+                    {"terms", 9},
+                    {"variance_share", 0.9},
+                    {"truncation", "diagonal"},
+                    {"root_intervals", "paper"}}),
+            "/random_field/terms /random_field/variance_share /random_field/truncation /random_field/root_intervals ");
+}
+
+TEST(Warnings, AResolvedCaseNamesAllKeysWithoutOne) {
+  const Json section = {{"correlation_length_m", 1}, {"log_stdev", 0.1}, {"truncation", "variance_share"}};
+  const LoadedCase loaded = test::load(with("/random_field", section));
+  EXPECT_TRUE(test::load(loaded.resolved).warnings.empty());
+}
+
 }  // namespace
 }  // namespace talus

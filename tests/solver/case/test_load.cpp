@@ -136,6 +136,7 @@ TEST(LoadCase, FieldAndStudyReachTheirMembers) {
               1,
               2,
               -0.3,
+              {},
               -0.4,
               FieldSampler::circulant_embedding,
               Truncation::diagonal,
@@ -150,15 +151,16 @@ TEST(LoadCase, FieldAndStudyReachTheirMembers) {
   EXPECT_EQ(c.study, (StudySpec{1, 2, 3, Sampling::latin_hypercube, 4, 5.0, 0.6, {7, 8}}));
 }
 
-TEST(LoadCase, MeanAndCovBecomeLogParameters) {
+TEST(LoadCase, MeanIsKeptAndCovBecomesTheLogStdev) {
   const auto field = [](Json section) { return *test::load(with("/random_field", std::move(section))).value.field; };
   const double cov = 0.3, mean = 0.5, sigma2 = std::log(1 + cov * cov);
   const FieldSpec both = field({{"correlation_length_m", 1}, {"mean_tan_phi", mean}, {"cov_tan_phi", cov}});
   EXPECT_NEAR(both.sigma, std::sqrt(sigma2), 1e-15);
-  EXPECT_NEAR(*both.mu, std::log(mean) - 0.5 * sigma2, 1e-15);
+  EXPECT_EQ(both.mean, mean);
+  EXPECT_FALSE(both.mu) << "it follows from the mean at each particle";
   const FieldSpec spread = field({{"correlation_length_m", 1}, {"cov_tan_phi", cov}});
   EXPECT_EQ(spread.sigma, both.sigma);
-  EXPECT_FALSE(spread.mu) << "the median is the material's";
+  EXPECT_FALSE(spread.mu || spread.mean) << "the median is the material's";
   EXPECT_EQ(spread.ell_x, 1.0);
   EXPECT_EQ(spread.ell_y, 1.0);
 }

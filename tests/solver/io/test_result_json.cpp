@@ -44,7 +44,7 @@ RunResult sample_result() {
           .digest = "0123456789abcdef",
           .backend = "vectorised",
           .simd = "AVX2",
-          .field = {.captured_variance = 0.016, .mean_phi = radians(25.0), .terms = 5},
+          .field = {.captured_variance = 0.016, .cov = 0.04, .mean_phi = radians(25.0), .terms = 5},
           .energy = {.kinetic = 1,
                      .potential = -1024,
                      .compression = 2,
@@ -111,6 +111,7 @@ TEST(ResultJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(d["backend"], "vectorised");
   EXPECT_EQ(d["simd"], "AVX2");
   EXPECT_EQ(d["field"]["captured_variance"], 0.016);
+  EXPECT_EQ(d["field"]["cov_tan_phi"], 0.04);
   EXPECT_NEAR(d["field"]["mean_friction_angle_deg"], 25.0, 1e-13);
   EXPECT_EQ(d["field"]["terms"], 5);
   EXPECT_EQ(d["quality"]["verdict"], "invalid");
@@ -175,6 +176,7 @@ TEST(ResultJson, OfAnEarlierVersionIsReadWithoutWhatCameLater) {
   const TemporaryDirectory dir;
   json earlier = document();
   for (const char* key : {"backend", "simd", "quality", "warnings", "mass_kg_m", "energy"}) earlier.erase(key);
+  earlier["field"].erase("cov_tan_phi");
   EXPECT_EQ(schema_faults(earlier), "");
   write_file_atomically(dir / "result.json", earlier.dump());
   const RunResult result = read_result(dir / "result.json").first;
@@ -247,7 +249,7 @@ TEST(ResultJson, NamesAnyKeyThatIsMissing) {
   for (const std::string& pointer : pointers(document())) {
     const std::string key = pointer.substr(1);
     if (key == "backend" || key == "simd" || key == "quality" || key == "warnings" || key == "mass_kg_m" ||
-        key == "energy")
+        key == "energy" || key == "field/cov_tan_phi")
       continue;  // came later
     if (const Measure* measure = find_measure(key); measure && measure != measure_table.data()) continue;
     const json::json_pointer place(pointer);

@@ -236,5 +236,23 @@ TEST(KarhunenLoeve, TenThousandModesOnASlide) {
   EXPECT_NEAR(sum / static_cast<double>(z.size()), field.captured_variance(), 0.2);
 }
 
+// V = sum_k scale_k^2 f_k^2 is the sum of the squared responses to unit coefficients, inside the domain and beyond it.
+TEST(KarhunenLoeve, VarianceAtPoints) {
+  const Box domain{{0, 2}, {8, 5}};
+  const std::vector<Vec2> points{{0, 2}, {0.1, 2.2}, {0.1, 4.9}, {4, 3.5}, {7.5, 4.9}, {8.2, 5.1}};
+  for (const FieldSpec& spec :
+       {FieldSpec{.ell_x = 2, .ell_y = 0.7, .terms = 5}, FieldSpec{.ell_x = 2, .truncation = Truncation::diagonal},
+        FieldSpec{.ell_x = 2, .ell_y = 0.7, .truncation = Truncation::variance_share, .variance_share = 0.8},
+        FieldSpec{.ell_x = 2, .ell_y = 0.7, .terms = 40, .cell_average = true},
+        FieldSpec{.direction = FieldDirection::y, .ell_y = 0.7, .root_intervals = RootIntervals::paper}}) {
+    const KarhunenLoeve field(spec, domain, 0.5);
+    const auto responses = test::responses(field, points);
+    const auto variance = field.variance(points);
+    ASSERT_EQ(variance.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_NEAR(variance[i], test::covariance(responses, i, i), 1e-13) << i;
+  }
+}
+
 }  // namespace
 }  // namespace talus

@@ -10,28 +10,35 @@ namespace talus {
 namespace {
 
 // [Z20] Table 4: its COV of 0.1 .. 0.5 is sigma/|mu|; the true coefficients of variation of tan(phi).
-TEST(LogParameters, OfThePapersCases) {
+TEST(LogStdev, OfThePapersCases) {
   const double sigmas[] = {0.0763, 0.1526, 0.2289, 0.3052, 0.3814};
   const double covs[] = {0.076, 0.153, 0.232, 0.312, 0.396};
-  for (int i = 0; i < 5; ++i) EXPECT_NEAR(log_parameters({.mean = 0.5, .cov = covs[i]}).sigma, sigmas[i], 5e-4);
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(log_stdev(covs[i]), sigmas[i], 5e-4);
 }
 
-TEST(LogParameters, GiveTheMomentsAsIntegralsOverTheDensity) {
+// Z of variance V, not 1: truncation or averaging took the rest.
+TEST(LogMedians, GiveTheMomentsAsIntegralsOverTheDensity) {
+  const std::vector<double> variances{1.0, 0.4, 0.01};
   for (const double cov : {1e-3, 0.1, 0.35, 0.8}) {
-    const LogParameters log = log_parameters({.mean = 0.4663, .cov = cov});
-    const auto moment = [&](int power) {
-      return integrate(
-          [&](double z) {
-            const double density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
-            return density * std::pow(std::exp(log.mu + log.sigma * z), power);
-          },
-          -12.0, 12.0, 20);
-    };
-    EXPECT_NEAR(moment(1), 0.4663, 1e-13);
-    EXPECT_NEAR(moment(2), 0.4663 * 0.4663 * (1 + cov * cov), 1e-13);
+    const double sigma = log_stdev(cov);
+    const auto mu = log_medians(0.4663, sigma, variances);
+    for (std::size_t i = 0; i < variances.size(); ++i) {
+      const auto moment = [&](int power) {
+        return integrate(
+            [&](double z) {
+              const double density = std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi);
+              return density * std::pow(std::exp(mu[i] + sigma * std::sqrt(variances[i]) * z), power);
+            },
+            -12.0, 12.0, 20);
+      };
+      const double left = coefficient_of_variation(sigma, variances[i]);
+      EXPECT_NEAR(moment(1), 0.4663, 1e-13);
+      EXPECT_NEAR(moment(2), 0.4663 * 0.4663 * (1 + left * left), 1e-13);
+    }
+    EXPECT_NEAR(coefficient_of_variation(sigma, 1.0), cov, 1e-14);
   }
-  EXPECT_EQ(log_parameters({.mean = 0.5, .cov = 0.0}).sigma, 0.0);
-  EXPECT_DOUBLE_EQ(log_parameters({.mean = 0.5, .cov = 0.0}).mu, std::log(0.5));
+  EXPECT_EQ(log_stdev(0.0), 0.0);
+  EXPECT_DOUBLE_EQ(log_medians(0.5, 0.0, variances)[1], std::log(0.5));
 }
 
 TEST(Lognormal, OneMeanForAllOrOneForEach) {

@@ -42,7 +42,7 @@ TEST(RandomField, IsTheKarhunenLoeveExpansion) {
 TEST(RandomField, IsTheCirculantEmbedding) {
   const FieldSpec spec{.sampler = FieldSampler::circulant_embedding};
   const RandomField field(spec, slide, 0.25);
-  const CirculantEmbedding embedding(spec, slide, 0.25, slide.lo);
+  const CirculantEmbedding embedding(spec, slide, 0.25);
   EXPECT_EQ(field.terms(), embedding.terms());
   EXPECT_EQ(field.captured_variance(), 1);
   EXPECT_EQ(field.variance(), 1);
