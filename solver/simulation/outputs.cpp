@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "simulation/observables.hpp"
+#include "simulation/reach.hpp"
 #include "simulation/simulation.hpp"
 
 namespace talus {
@@ -109,13 +110,8 @@ RunFacts Simulation::facts() const {
   f.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
   f.at_open_end = at_open_end();
   f.time = time_;
-  const auto any_positive = [](const auto& values) {
-    return std::ranges::any_of(values, [](double x) { return x > 0.0; });
-  };
-  if (any_positive(soil_.tan_phi) || any_positive(soil_.c)) {  // otherwise it never comes to rest
-    f.rms_speed = rms_speed(soil_) / std::sqrt(norm(model_.g) * fall_height(model_));
-    f.run_on = run_on();
-  }
+  f.rms_speed = rms_speed(soil_) / std::sqrt(norm(model_.g) * fall_height(model_));
+  f.run_on = run_on();
   return f;
 }
 
