@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "case/outline.hpp"
 #include "case/overlay.hpp"
 #include "case/sections.hpp"
 #include "particles/geometry.hpp"
 #include "simulation/particle_setup.hpp"
+#include "simulation/reach.hpp"
 #include "support/text.hpp"
 
 namespace talus {
@@ -72,15 +72,6 @@ void check_counts(const Model& model, Faults& faults) {
                  rounded(estimate.spacing_for(static_cast<double>(model.max_particles))) + " m on fits");
 }
 
-/// The energy line that falls from the slide's points at the smallest friction angle: how high it passes over `end`.
-double energy_line_over(const Model& model, Vec2 end) {
-  const double phi = std::ranges::min(model.materials, {}, &Material::phi).phi;
-  double height = -std::numeric_limits<double>::infinity();
-  for (const SlidePart& part : model.slide)
-    for (const Vec2& v : part.outline) height = std::max(height, v.y - std::tan(phi) * std::abs(end.x - v.x));
-  return height - end.y;
-}
-
 /// Legal, but often two rows in the wrong order.
 void warn_of_overhangs(const Terrain& terrain, std::vector<Fault>& warnings) {
   for (std::size_t k = 1; k < terrain.bed.size(); ++k) {
@@ -95,9 +86,11 @@ void warn_of_overhangs(const Terrain& terrain, std::vector<Fault>& warnings) {
 
 void warn_of_open_ends(const Model& model, std::vector<Fault>& warnings) {
   const Terrain& t = model.terrain;
+  const EnergyLine line = energy_line(model);
+  const bool stands = stands_by_cohesion(model);
   const auto check_end = [&](bool wall, Vec2 end, const char* pointer) {
-    const double over = energy_line_over(model, end);
-    if (!wall && over > 0.0)
+    const double over = line.height(end.x) - end.y;
+    if (!wall && !stands && over > 0.0)
       warnings.push_back({pointer, "may leak: the energy line at the friction angle passes " + rounded(over) +
                                        " m above the bed's end " + to_text(end) +
                                        "; soil that leaves is lost, so extend the bed or set a wall"});

@@ -161,7 +161,7 @@ void read_numerics(ObjectReader& in, Numerics& n) {
              "numerical noise of the front, see tests/validation; [Z20] does not state it"});
   in.optional_number("sound_speed_m_s", n.c_s, {"m/s", 0.0, 1e5, true},
                      {"Numerical speed of sound of the equation of state.", "Monaghan 1994: density then varies by 1 %",
-                      "10 sqrt(2 g H), H from the slide's highest point to the lowest of the bed"});
+                      "10 sqrt(2 g H), H from the slide's highest point to the lowest of the bed within its reach"});
   in.number("artificial_viscosity_alpha", n.alpha, {"", 0.0, 10.0},
             {"Artificial viscosity, linear term.", "Monaghan 1992"});
   in.number("artificial_viscosity_beta", n.beta, {"", 0.0, 10.0},

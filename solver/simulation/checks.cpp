@@ -50,7 +50,7 @@ constexpr Check checks[] = {
     // What the soil's strength and viscosity do not take decides the run-out in their place, and falls with the
     // spacing.
     {"numerical_dissipation",
-     [](const RunFacts& f) { return f.rms_speed ? Value(numerical_share(f)) : Value(); },
+     [](const RunFacts& f) { return Value(numerical_share(f)); },
      1.0 / 3.0,
      {},
      [](const RunFacts&, double x) {

@@ -33,10 +33,9 @@ struct RunFacts {
   std::int64_t at_open_end = 0;          ///< of them, those that came to within a spacing of an open end
   double dx = 1.0;                       ///< particle spacing [m]
   double time = 0.0;                     ///< reached [s]
-  std::optional<double> rms_speed = {};  ///< at the end, over sqrt(|g| H) [-]; unset: soil without strength
-  std::optional<double> run_on = {};     ///< by which the front may still advance [m]; unset as rms_speed
-  std::optional<double> creep = {};  ///< of the front in as long again as the run lasted [m]; unset as rms_speed, and
-                                     ///< where that is above rest_speed
+  std::optional<double> rms_speed = {};  ///< at the end, over sqrt(|g| H) [-]
+  std::optional<double> run_on = {};     ///< by which the front may still advance on friction [m]
+  std::optional<double> creep = {};  ///< of the front in as long again [m]; unset where rms_speed is above rest_speed
   std::optional<double> rows = {};   ///< particles across the slide at the start
   std::optional<double> correlation_length = {};  ///< shortest, of a field that is not averaged over cells [m]
   std::optional<double> courant = {};             ///< of a fixed time step [-]

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "simulation/observables.hpp"
+#include "simulation/reach.hpp"
 #include "simulation/simulation.hpp"
 
 namespace talus {
@@ -135,14 +136,9 @@ RunFacts Simulation::facts() const {
   f.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
   f.at_open_end = at_open_end();
   f.time = time_;
-  const auto any_positive = [](const auto& values) {
-    return std::ranges::any_of(values, [](double x) { return x > 0.0; });
-  };
-  if (any_positive(soil_.tan_phi) || any_positive(soil_.c)) {  // otherwise it never comes to rest
-    f.rms_speed = relative_speed();
-    f.run_on = run_on();
-    if (*f.rms_speed <= rest_speed) f.creep = creep();
-  }
+  f.rms_speed = relative_speed();
+  f.run_on = run_on();
+  if (*f.rms_speed <= rest_speed) f.creep = creep();
   return f;
 }
 

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string>
 
+#include "simulation/reach.hpp"
 #include "support/error.hpp"
 
 namespace talus {
@@ -52,13 +53,6 @@ SoilProperties material_properties(const Model& model, const ParticlePlan& plan)
     properties.c.push_back(material.c);
   }
   return properties;
-}
-
-double fall_height(const Model& model) {
-  const Box box = bounding_box(model.slide);
-  double lowest = box.lo.y;
-  for (const Vec2& v : model.terrain.bed) lowest = std::min(lowest, v.y);
-  return box.hi.y - lowest;
 }
 
 double sound_speed(const Model& model) {

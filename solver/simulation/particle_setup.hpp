@@ -52,10 +52,7 @@ struct SoilProperties {
 /// The properties that the materials give.
 SoilProperties material_properties(const Model& model, const ParticlePlan& plan);
 
-/// Fall height H [m]: highest point of the slide over the lowest point of bed and slide; sets the scale sqrt(2 g H) of
-/// speed.
-double fall_height(const Model& model);
-/// c_s of the model, 10 sqrt(2 g H) unless given [m/s].
+/// c_s of the model, 10 sqrt(2 g H) with the fall height H unless given [m/s].
 double sound_speed(const Model& model);
 FlowConstants flow_constants(const Model& model);
 /// What bounds the time step; the compression wave is that of the stiffest material: sqrt(c_s^2 + 4/3 G/rho0) with the

@@ -93,6 +93,21 @@ TEST(Warnings, AnOpenEndWithinReach) {
   EXPECT_TRUE(test::load(with("/terrain/right_end", "wall", with("/terrain/bed_m/2", {18, 0}))).warnings.empty());
 }
 
+// A block of 3 m on flat ground, frictionless: 2 c carries its weight of 58.9 kPa from c = 29.4 kPa on.
+TEST(Warnings, SoilThatStandsByItsCohesionDoesNotLeak) {
+  Json block = with("/terrain/bed_m", {{0, 0}, {100, 0}});
+  block["slide"]["outlines"][0]["outline_m"] = {{40, 0}, {60, 0}, {60, 3}, {40, 3}};
+  block["material"]["friction_angle_deg"] = 0;
+  const auto leaks = [&](double c) { return test::load(with("/material/cohesion_Pa", c, block)).warnings.size() == 1; };
+  EXPECT_FALSE(leaks(1e6));
+  EXPECT_FALSE(leaks(30e3));
+  EXPECT_TRUE(leaks(29e3));
+  // A cut of 1 m against a wall.
+  Json cut = with("/terrain/bed_m", {{0, 0}, {40, 0}}, block);
+  cut["slide"]["outlines"][0]["outline_m"] = {{0, 0}, {4, 0}, {4, 1}, {0, 1}};
+  EXPECT_TRUE(test::load(with("/material/cohesion_Pa", 10e3, cut)).warnings.empty());
+}
+
 TEST(Warnings, AWallLowerThanTheSlide) {
   EXPECT_EQ(test::load(with("/terrain/wall_top_m", 7)).warnings.size(), 1u);
   EXPECT_EQ(test::load(with("/terrain/wall_top_m", 8)).warnings.size(), 0u);

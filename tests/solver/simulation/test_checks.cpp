@@ -41,7 +41,6 @@ const std::vector<Row> rows{
     {"energy_created", 0.1, Verdict::invalid, [](RunFacts& f, double x) { f.energy.friction = 1000.0 * x; }, "10.1 %"},
     {"numerical_dissipation", 1.0 / 3.0, Verdict::doubtful,
      [](RunFacts& f, double x) {
-       f.rms_speed = 0.0;
        f.energy.artificial_viscosity = 900.0 * x;
        f.energy.density_diffusion = 100.0 * x;
        f.energy.kinetic -= 1000.0 * x;
