@@ -54,12 +54,13 @@ Exit profile(const ProfileOptions& options) {
     write_file_atomically(options.out, columns(frame).dump() + "\n");
   } else {
     const LoadedCase loaded = load_case(options.directory / "case.resolved.json");
-    const Provenance from = read_result(options.directory / "result.json").second;
+    const auto [result, from] = read_result(options.directory / "result.json");
     std::string source = "Talus " + from.version + "  ·  seed " + std::to_string(from.seed);
     if (from.realization) source += "  ·  realization " + std::to_string(*from.realization);
     const figures::Snapshot shot{&frame, figures::Colour::displacement, {}};
     figures::plot_profiles({&shot, 1}, loaded.value.model.terrain, loaded.value.model.dx, options.out,
-                           {from.case_title, "Displacement at the end", source + "  ·  case " + from.case_hash});
+                           {from.case_title, "Displacement at the end", source + "  ·  case " + from.case_hash,
+                            verdict_lines(result.quality)});
   }
   std::cout << options.out.string() << "\n";
   return Exit::ok;

@@ -59,15 +59,6 @@ class ProgressLine {
   double next_ = 0.5;
 };
 
-/// "invalid: ..." and "doubtful: ...", a line for each reason, the worst first.
-std::string verdict_lines(const Quality& quality) {
-  std::string text;
-  for (const Verdict verdict : {Verdict::invalid, Verdict::doubtful})
-    for (const QualityReason& reason : quality.reasons)
-      if (reason.verdict == verdict) text += std::string(word(verdict)) + ": " + reason.message + "\n";
-  return text;
-}
-
 void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t seed) {
   std::fputs(verdict_lines(r.quality).c_str(), stdout);
   std::printf("distances from x = %.10g m to the %s\n", axis.from, axis.to == SlidesTo::right ? "right" : "left");

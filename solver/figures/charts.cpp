@@ -62,7 +62,9 @@ Axis means_axis(const Rows& rows) {
 }  // namespace
 
 Sheet chart(const StudyFiles& study, std::string_view subtitle, const Canvas& canvas) {
-  return {canvas, {study.title, std::string(subtitle), study.source + "  ·  " + count_text(study), study.quality}};
+  return {canvas,
+          {study.title, std::string(subtitle), study.source + "  ·  " + count_text(study),
+           shortened(study.quality, note_characters(canvas))}};
 }
 
 std::string count_text(const StudyFiles& study) {

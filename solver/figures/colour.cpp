@@ -19,24 +19,11 @@ std::string palette_command(const Palette& palette) {
   return command + ")";
 }
 
-std::uint32_t colour_at(const Palette& palette, double t) {
-  const double at = std::clamp(t, 0.0, 1.0) * static_cast<double>(palette.size() - 1);
-  const std::size_t below = std::min(static_cast<std::size_t>(at), palette.size() - 2);
-  const double share = at - static_cast<double>(below);
-  std::uint32_t rgb = 0;
-  for (int shift = 16; shift >= 0; shift -= 8) {
-    const double a = (palette[below] >> shift) & 0xff;
-    const double b = (palette[below + 1] >> shift) & 0xff;
-    rgb |= static_cast<std::uint32_t>(std::lround(a + share * (b - a))) << shift;
-  }
-  return rgb;
-}
-
 const ColourScale& scale_of(Colour colour) {
   static constexpr ColourScale scales[] = {
-      {"speed (m/s)", &plasma, [](const Frame& f, std::size_t i) { return norm(f.velocity[i]); }},
+      {"speed (m/s)", &plasma_on_white, [](const Frame& f, std::size_t i) { return norm(f.velocity[i]); }},
       {"friction angle (°)", &viridis, [](const Frame& f, std::size_t i) { return friction_angle_deg(f.tan_phi[i]); }},
-      {"displacement (m)", &magma, [](const Frame& f, std::size_t i) { return norm(f.displacement[i]); }},
+      {"displacement (m)", &magma_on_white, [](const Frame& f, std::size_t i) { return norm(f.displacement[i]); }},
       {"pressure (kPa)", &cividis, [](const Frame& f, std::size_t i) { return f.pressure[i] / 1000.0; }}};
   return scales[static_cast<int>(colour)];
 }

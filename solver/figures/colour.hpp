@@ -1,6 +1,7 @@
 #pragma once
 // Colours that keep their order in grey and for colour-blind eyes, and the quantities that colour the soil.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -25,6 +26,31 @@ inline constexpr Palette magma{0x000004, 0x140e36, 0x3b0f70, 0x641a80, 0x8c2981,
 inline constexpr Palette cividis{0x00224e, 0x083370, 0x35456c, 0x4f576c, 0x666970, 0x7d7c78,
                                  0x948e77, 0xaea371, 0xc8b866, 0xe5cf52, 0xfee838};
 
+/// Colour at t in [0, 1] (clamped), as 0xRRGGBB.
+constexpr std::uint32_t colour_at(const Palette& palette, double t) {
+  const double at = std::clamp(t, 0.0, 1.0) * static_cast<double>(palette.size() - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(at), palette.size() - 2);
+  const double share = at - static_cast<double>(below);
+  std::uint32_t rgb = 0;
+  for (int shift = 16; shift >= 0; shift -= 8) {
+    const double a = (palette[below] >> shift) & 0xff;
+    const double b = (palette[below + 1] >> shift) & 0xff;
+    rgb |= static_cast<std::uint32_t>(a + share * (b - a) + 0.5) << shift;
+  }
+  return rgb;
+}
+
+/// A palette from its start to `share` of its range. The soil that is fastest or went farthest lies thin on the ground,
+/// and the palest colours would be lost on white.
+constexpr Palette darker_part(const Palette& palette, double share) {
+  Palette part{};
+  for (std::size_t k = 0; k < part.size(); ++k)
+    part[k] = colour_at(palette, share * static_cast<double>(k) / static_cast<double>(part.size() - 1));
+  return part;
+}
+inline constexpr Palette plasma_on_white = darker_part(plasma, 0.9);
+inline constexpr Palette magma_on_white = darker_part(magma, 0.8);
+
 /// Colours of lines, from the set of Okabe and Ito (2008), which colour-blind eyes tell apart.
 inline constexpr const char* blue = "#0072B2";
 inline constexpr const char* vermillion = "#D55E00";
@@ -35,9 +61,6 @@ inline constexpr const char* ground = "#E9E3D6";  ///< what lies beneath the bed
 
 /// gnuplot's `set palette` command for the palette.
 std::string palette_command(const Palette& palette);
-
-/// Colour at t in [0, 1] (clamped), as 0xRRGGBB.
-std::uint32_t colour_at(const Palette& palette, double t);
 
 /// What the particles are coloured by.
 enum class Colour { speed, friction_angle, displacement, pressure };

@@ -7,8 +7,8 @@
 namespace talus::figures {
 namespace {
 
-constexpr Canvas canvas{900, 576};
-constexpr Panel panel{84, 640, 84, 500};
+constexpr Canvas canvas_without_note{900, 558};
+constexpr Panel panel_without_note{84, 640, 66, 482};
 constexpr double least_share = 0.005;  ///< of gravity's work, for a line of its own
 
 /// A line of the chart.
@@ -59,6 +59,12 @@ Sheet energy_sheet(std::span<const HistoryRow> history, const Stamps& stamps) {
   const double gravity = end.gravity_work();
   Stamps with_subtitle = stamps;
   with_subtitle.subtitle = "Work of gravity per metre of width, and what took it";
+  const double note_height = note_pitch * static_cast<double>(note_lines(stamps.note, canvas_without_note).size());
+  const double room_above = std::max(note_pitch, note_height);
+  const Canvas canvas{canvas_without_note.width, canvas_without_note.height + room_above};
+  Panel panel = panel_without_note;
+  panel.top += room_above;
+  panel.bottom += room_above;
   Sheet sheet(canvas, with_subtitle);
   double largest = 0.0, lowest = 0.0, highest = 0.0;
   for (const HistoryRow& row : history) largest = std::max(largest, std::abs(row.energy.gravity_work()));

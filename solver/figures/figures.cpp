@@ -150,16 +150,16 @@ std::vector<fs::path> plot_study(const fs::path& directory) {
     const fs::path file = directory / "profiles" / (which + ".vtkhdf");
     if (!fs::exists(file)) continue;
     const std::string name = which == "first" ? "First realization. " : "Realization with the longest run-out. ";
-    draw_motion(album, file, "_" + which, model, {study.title, name, study.source});
+    draw_motion(album, file, "_" + which, model, {study.title, name, study.source, study.quality});
   }
   return album.drawn();
 }
 
 std::vector<fs::path> plot_run(const fs::path& directory) {
   const fs::path file = directory / "snapshots.vtkhdf";
-  const Provenance from = read_result(directory / "result.json").second;
+  const auto [result, from] = read_result(directory / "result.json");
   const Model model = resolved_case(directory).value.model;
-  const Stamps stamps{from.case_title, {}, run_source(from)};
+  const Stamps stamps{from.case_title, {}, run_source(from), verdict_lines(result.quality)};
   Album album(directory);
   draw_motion(album, file, "", model, stamps);
   draw_end(album, file, model, stamps);

@@ -109,6 +109,15 @@ void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRan
   d.sheet.script("unset colorbox");
 }
 
+/// `height` px more above the panels.
+void make_room(Layout& layout, double height) {
+  layout.canvas.height += height;
+  for (Panel& panel : layout.panels) {
+    panel.top += height;
+    panel.bottom += height;
+  }
+}
+
 std::vector<const Frame*> frames_of(std::span<const Snapshot> snapshots, std::optional<Colour> colour = {}) {
   std::vector<const Frame*> frames;
   for (const Snapshot& s : snapshots) {
@@ -181,7 +190,8 @@ Sheet profile_sheet(std::span<const Snapshot> snapshots, const Terrain& terrain,
   const bool mixed = std::any_of(snapshots.begin(), snapshots.end(),
                                  [&](const Snapshot& s) { return s.colour != snapshots[0].colour; });
   const Box view = options.view.value_or(view_of(frames, terrain, dx));
-  const Layout layout = profile_layout(snapshots.size(), view, mixed ? 44 : 30);
+  Layout layout = profile_layout(snapshots.size(), view, mixed ? 44 : 30);
+  make_room(layout, note_pitch * static_cast<double>(note_lines(stamps.note, layout.canvas).size()));
   const double bar = 220;  // px
   Sheet sheet(layout.canvas, stamps, mixed ? 0 : bar + 170);
   const Drawing drawing{sheet, layout, terrain, dx, view, raster};

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
+#include <utility>
 
 #include "support/error.hpp"
 #include "support/files.hpp"
@@ -108,6 +110,26 @@ std::string boxes(std::string_view data, std::string_view columns, double opacit
          number(opacity) + " " + std::string(border) + " linecolor rgb '" + colour + "'";
 }
 
+std::size_t note_characters(const Canvas& canvas) {
+  return static_cast<std::size_t>(std::max(1.0, (canvas.width - 2 * side_margin) / px_text));
+}
+
+std::vector<std::string> note_lines(std::string_view note, const Canvas& canvas) {
+  const std::size_t most = note_characters(canvas);
+  std::vector<std::string> lines;
+  std::istringstream given{std::string(note)};
+  for (std::string line; std::getline(given, line);) {
+    std::string fitted;
+    std::istringstream words(line);
+    for (std::string next; words >> next;) {
+      if (!fitted.empty() && fitted.size() + 1 + next.size() > most) lines.push_back(std::exchange(fitted, {}));
+      fitted += (fitted.empty() ? "" : " ") + next;
+    }
+    lines.push_back(fitted);
+  }
+  return lines;
+}
+
 Sheet::Sheet(const Canvas& size, const Stamps& stamps, double reserved) : canvas(size) {
   script("set encoding utf8");
   script("set border 3 linewidth 0.8 linecolor rgb '", ink, "'");
@@ -120,7 +142,11 @@ Sheet::Sheet(const Canvas& size, const Stamps& stamps, double reserved) : canvas
   const double room = canvas.width - 2 * side_margin;
   text(side_margin, 26, fitted(stamps.title, room - reserved, px_bold), {.points = 12, .bold = true});
   text(side_margin, 50, fitted(stamps.subtitle, room, px_text), {.colour = faint});
-  text(side_margin, 70, fitted(stamps.note, room, px_text), {.colour = vermillion});
+  double y = 70;
+  for (const std::string& words : note_lines(stamps.note, canvas)) {
+    text(side_margin, y, words, {.colour = vermillion});
+    y += note_pitch;
+  }
   text(side_margin, canvas.height - 13, fitted(stamps.source, room, px_small), {.points = 8, .colour = faint});
   script("set multiplot");
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "figures/colour.hpp"
 #include "math/vec2.hpp"
@@ -85,8 +86,14 @@ struct Stamps {
   std::string title;      ///< bold, upper left
   std::string subtitle;   ///< beneath it
   std::string source;     ///< small, lower left: case, version, seed, realization
-  std::string note = {};  ///< beneath the subtitle, in vermillion: what makes the figure doubtful
+  std::string note = {};  ///< beneath the subtitle, in vermillion, as note_lines(): what makes the figure doubtful
 };
+
+inline constexpr double note_pitch = 18;  ///< px from one line of a note to the next
+/// Characters of a note that fit into a line of a canvas.
+std::size_t note_characters(const Canvas& canvas);
+/// The lines of a note, wrapped between words where they are longer than the canvas is wide.
+std::vector<std::string> note_lines(std::string_view note, const Canvas& canvas);
 
 /// An axis of a plot: what it shows and where its tics are.
 struct Axis {

@@ -7,6 +7,14 @@ constexpr std::string_view between_reasons = "; ", after_check = ": ";
 
 }  // namespace
 
+std::string verdict_lines(const Quality& quality) {
+  std::string text;
+  for (const Verdict verdict : {Verdict::invalid, Verdict::doubtful})
+    for (const QualityReason& reason : quality.reasons)
+      if (reason.verdict == verdict) text += std::string(word(verdict)) + ": " + reason.message + "\n";
+  return text;
+}
+
 std::string objections_text(const Quality& quality) {
   std::string text;
   for (const QualityReason& reason : quality.reasons) {

@@ -38,6 +38,9 @@ struct Quality {
   std::vector<QualityReason> reasons = {};
 };
 
+/// "invalid: ..." and "doubtful: ...", a line for each reason, the worst first; empty without any.
+std::string verdict_lines(const Quality& quality);
+
 /// A reason as tables keep it.
 struct Objection {
   std::string check, message;

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "case/load.hpp"
 #include "example_study.hpp"
 #include "figures/figures.hpp"
@@ -50,8 +52,9 @@ void write_snapshots(const fs::path& file) {
   writer.close();
 }
 
-void write_result(const fs::path& directory) {
+void write_result(const fs::path& directory, const Quality& quality = {}) {
   RunResult result;
+  result.quality = quality;
   result.digest = "0123456789abcdef";
   const Provenance from{
       "0.1.0", 42, 3, {}, "0123456789abcdef", "It's a \"block\"; `id`", "g++", "2025-01-31T12:00:00Z"};
@@ -108,6 +111,34 @@ TEST(Figures, ARunIsDrawnFromItsFiles) {
   // Nothing half-written stays behind.
   EXPECT_EQ(std::distance(fs::directory_iterator(directory / "figures"), fs::directory_iterator{}),
             static_cast<std::ptrdiff_t>(drawn.size()));
+}
+
+TEST(Figures, EveryPictureOfARunCarriesItsVerdict) {
+  const test::TemporaryDirectory directory;
+  write_case(directory.path());
+  write_snapshots(directory / "snapshots.vtkhdf");
+  write_moving_history(directory.path());
+  const auto svgs_with = [&](const std::vector<std::string>& words) {
+    std::size_t with = 0, all = 0;
+    for (const fs::path& path : plot_run(directory.path())) {
+      if (path.extension() != ".svg") continue;
+      ++all;
+      const std::string svg = read_file(path, 1'000'000);
+      const bool has_all = std::ranges::all_of(words, [&](const std::string& w) { return test::contains(svg, w); });
+      with += has_all ? 1 : 0;
+    }
+    EXPECT_EQ(all, 7u);
+    return with;
+  };
+  write_result(directory.path(), {.verdict = Verdict::sound});
+  EXPECT_EQ(svgs_with({"doubtful"}), 0u);
+  const unsigned without = test::png_size(directory / "figures/end.png").height;
+  write_result(directory.path(),
+               {.verdict = Verdict::doubtful,
+                .reasons = {{.check = "still_moving", .verdict = Verdict::doubtful, .message = "it moves"},
+                            {.check = "compression", .verdict = Verdict::doubtful, .message = "it is squeezed"}}});
+  EXPECT_EQ(svgs_with({"doubtful: it moves", "doubtful: it is squeezed"}), 7u);
+  EXPECT_EQ(test::png_size(directory / "figures/end.png").height, without + 2 * 2 * 18) << "two lines of room";
 }
 
 TEST(Figures, AStudyIsDrawnFromItsFiles) {

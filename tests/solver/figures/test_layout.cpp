@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "figures/profile.hpp"
 
 namespace talus::figures {
@@ -24,6 +27,20 @@ TEST(Layout, AspectIsEqualAndPanelsNeitherOverlapNorLeaveTheCanvas) {
       }
     }
   }
+}
+
+TEST(Layout, NotesAreWrappedAndKeepEveryWord) {
+  const Canvas canvas{300, 200};
+  const std::string first =
+      "doubtful: the slide moved at 44.7 % of sqrt(g H) when the run ended, so its run-out is not final";
+  const std::vector<std::string> lines = note_lines(first + "\ninvalid: too fast\n", canvas);
+  ASSERT_GT(lines.size(), 2u);
+  std::string joined = lines.front();
+  for (std::size_t k = 1; k + 1 < lines.size(); ++k) joined += " " + lines[k];
+  EXPECT_EQ(joined, first);
+  EXPECT_EQ(lines.back(), "invalid: too fast");
+  for (const std::string& line : lines) EXPECT_LE(line.size(), note_characters(canvas));
+  EXPECT_TRUE(note_lines("", canvas).empty());
 }
 
 }  // namespace

@@ -30,6 +30,16 @@ TEST(Palette, ColourAtIsLinearBetweenStopsAndClamped) {
   EXPECT_EQ(colour_at(viridis, 0.05), 0x461365u);
 }
 
+// The palest colour of soil that is fastest or went farthest, against white: contrast ratio of WCAG 2.
+TEST(Palette, FastAndFarSoilIsSeenOnWhite) {
+  for (const Colour colour : {Colour::speed, Colour::displacement}) {
+    const double contrast = 1.05 / (luminance(scale_of(colour).palette->back()) + 0.05);
+    EXPECT_GT(contrast, 1.4) << scale_of(colour).name;
+  }
+  EXPECT_EQ(darker_part(viridis, 0.5).back(), viridis[5]);
+  EXPECT_EQ(darker_part(viridis, 0.5)[2], viridis[1]);
+}
+
 TEST(Palette, CommandNamesEveryStop) {
   const std::string command = palette_command(cividis);
   EXPECT_TRUE(test::contains(command, "0.0 '#00224e'"));

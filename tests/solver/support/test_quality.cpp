@@ -25,5 +25,13 @@ TEST(Quality, EveryVerdictHasItsWord) {
   EXPECT_EQ(words_of_check("still_moving"), "still moving");
 }
 
+TEST(Quality, ALineForEachReasonTheWorstFirst) {
+  const Quality quality{.verdict = Verdict::invalid,
+                        .reasons = {{.check = "still_moving", .verdict = Verdict::doubtful, .message = "it moves"},
+                                    {.check = "mach_number", .verdict = Verdict::invalid, .message = "too fast"}}};
+  EXPECT_EQ(verdict_lines(quality), "invalid: too fast\ndoubtful: it moves\n");
+  EXPECT_EQ(verdict_lines({.verdict = Verdict::sound}), "");
+}
+
 }  // namespace
 }  // namespace talus
