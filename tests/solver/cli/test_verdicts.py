@@ -96,7 +96,7 @@ class Run(Directory):
         self.assertFalse(self.result["at_rest"])
 
     def test_a_slide_that_creeps_is_not_at_rest(self):
-        path = self.file("viscous", particle_spacing_m=0.8, terrain={"bed_m": [[0, 40], [200, 20], [400, 0]]},
+        path = self.file("viscous", particle_spacing_m=0.5, terrain={"bed_m": [[0, 40], [200, 20], [400, 0]]},
                          slide={"outlines": [{"outline_m": [[0, 40], [20, 38], [20, 42], [0, 44]]}]}, time={"end_s": 20},
                          material={"density_kg_m3": 2000, "friction_angle_deg": 5, "viscosity_Pa_s": 2e5})
         self.assert_says("creeping", "doubtful", case=path)

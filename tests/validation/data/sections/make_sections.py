@@ -165,7 +165,7 @@ def alpine(raw):
     save("alpine", ground, slip, case(
         "alpine", "Alpine valley with a cliff",
         "Elevations on a grid of 25 m; the slide falls over a cliff of 270 m. The slip surface is assumed.",
-        3.0, material, 80, numerics={"sound_speed_m_s": 600}))
+        3.0, material, 80, numerics={"sound_speed_m_s": 600, "artificial_viscosity_jump": "reconstructed"}))
 
 
 def hill(raw):
