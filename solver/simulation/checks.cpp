@@ -117,7 +117,7 @@ constexpr Check checks[] = {
     // Viscous soil may move at a hundredth of the speed of its fall and still go on for as long as one waits.
     {"creeping",
      [](const RunFacts& f) { return f.creep ? Value(*f.creep / f.dx) : Value(); },
-     rest_creep,
+     rest_advance,
      {},
      [](const RunFacts& f, double) {
        return "the front still moved when the run ended at t = " + to_text(f.time) +

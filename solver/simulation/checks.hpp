@@ -19,8 +19,6 @@ constexpr double stable_cfl(Integrator integrator) { return integrator == Integr
 inline constexpr double rest_speed = 0.01;
 /// By how many spacings the front of a slide at rest may still advance [-].
 inline constexpr double rest_advance = 1.0;
-/// By how many spacings it may advance at its creep in as long again as the run lasted [-].
-inline constexpr double rest_creep = 3.0;
 
 /// What the checks look at. The defaults are those of a run without fault; what is unset is not checked.
 struct RunFacts {

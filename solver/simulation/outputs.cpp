@@ -107,8 +107,8 @@ double Simulation::relative_speed() const { return rms_speed(soil_) / std::sqrt(
 
 /// By the rule of the case, or by that of the verdict (`still_moving`, `front_still_moving`, `creeping`).
 bool Simulation::at_rest() const {
-  return rests() ||
-         (relative_speed() <= rest_speed && run_on() <= rest_advance * model_.dx && creep() <= rest_creep * model_.dx);
+  return rests() || (relative_speed() <= rest_speed && run_on() <= rest_advance * model_.dx &&
+                     creep() <= rest_advance * model_.dx);
 }
 
 /// Particles that are nearer than a spacing to an open end of the bed, and did not start there.

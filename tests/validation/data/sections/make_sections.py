@@ -153,7 +153,7 @@ def valley_side(raw):
     save("valley-side", ground, slip, case(
         "valley-side", "Valley side on a national grid",
         "Elevations in whole metres on a grid of 2 m. Chainage is the easting. The slip surface is assumed.",
-        1.0, material, 100, numerics={"sound_speed_m_s": 120}))
+        1.0, material, 100, numerics={"sound_speed_m_s": 120, "artificial_viscosity_jump": "reconstructed"}))
 
 
 def alpine(raw):
