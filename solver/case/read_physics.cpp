@@ -151,7 +151,7 @@ void read_rheology(ObjectReader& in, Rheology& r) {
   in.number("min_shear_rate_1_s", r.gamma_dot_min, {"1/s", 0.0, 1000.0, true},
             {"Smallest shear rate in the regularized law.", "[Z20] section 2"});
   in.optional_number("shear_modulus_Pa", r.G, {"Pa", 0.0, 1e15, true},
-                     {"Numerical shear modulus of the elastic law.", "numerical", "0.1 density sound_speed^2"});
+                     {"Numerical shear modulus of the elastic law.", "numerical", "0.3 density sound_speed^2"});
 }
 
 void read_numerics(ObjectReader& in, Numerics& n) {

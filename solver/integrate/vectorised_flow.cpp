@@ -86,6 +86,7 @@ void VectorisedFlow::rebuild_neighbour_lists(const Soil& soil, const WallParticl
   flow_.soil_wall.resize(flow_.soil_clusters);
   flow_.wall_soil.resize(flow_.wall_clusters);
   pack_walls(flow_, constants(), walls);
+  pack_strength(flow_, soil);
   work_.resize(flow_.soil_soil.batches.size() + 1);
   std::iota(work_.begin(), work_.end(), std::size_t{0});  // the lists that tell the work do not exist yet
   partition_work();

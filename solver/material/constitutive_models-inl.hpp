@@ -44,6 +44,9 @@ HWY_INLINE Real shear_rate(Deviator<Real> e, ShearRate norm) {
   return sqrt(Real(norm == ShearRate::paper ? 2.0 / 3.0 : 2.0) * double_dot(e));
 }
 
+/// On tau_y: the norm of Eq. 7 as printed shears at sqrt(3) tau_y, and the elastic law follows it.
+inline double yield_factor(ShearRate norm) { return norm == ShearRate::paper ? std::numbers::sqrt3 : 1.0; }
+
 /// tau_y = c + max(p, 0) tan(phi)                                          [Z20] Eq. 5
 template <class Real>
 HWY_INLINE Real yield_stress(Real c, Real tan_phi, Real p) {
@@ -114,18 +117,16 @@ HWY_INLINE Deviator<Real> elastic_rate(Deviator<Real> t, Deviator<Real> e, Real 
 /// Elasto-viscoplastic: rigid below the yield stress up to a numerical elasticity, viscous beyond; no creep at rest.
 template <class Real>
 struct ElastoViscoplastic {
-  /// On tau_y: the norm of Eq. 7 as printed shears at sqrt(3) tau_y, and the elastic law follows it.
-  Real yield_factor;
+  Real of_yield;  ///< yield_factor
 
-  explicit HWY_INLINE ElastoViscoplastic(const Rheology& rheology)
-      : yield_factor(rheology.shear_rate == ShearRate::paper ? std::numbers::sqrt3 : 1.0) {}
+  explicit HWY_INLINE ElastoViscoplastic(const Rheology& rheology) : of_yield(yield_factor(rheology.shear_rate)) {}
 
   /// t = t_elastic + 2 eta dev(e)
   /// @param elastic  the stress that the soil keeps: value(), add(change) and set_rate(dt/dt)
   template <class ElasticStress>
   HWY_INLINE Deviator<Real> stress(const PointState<Real>& at, ElasticStress&& elastic) const {
     Deviator<Real> t = elastic.value();
-    const Real limit = yield_factor * yield_stress(at.c, at.tan_phi, at.p), size = magnitude(t);
+    const Real limit = of_yield * yield_stress(at.c, at.tan_phi, at.p), size = magnitude(t);
     if (const auto yields = size > limit; any(yields)) {
       const Deviator<Real> change = t * select_or_zero(yields, limit / size - Real(1.0));
       t = t + change;

@@ -49,7 +49,7 @@ struct Rheology {
   ShearRate shear_rate = ShearRate::consistent;
   Yield yield = Yield::elastic;
   double gamma_dot_min = 1e-3;  ///< floor of the shear rate of the regularised law [1/s], > 0; [Z20] uses 1e-3
-  std::optional<double> G;      ///< numerical shear modulus of the elastic law [Pa], > 0; unset: 0.1 rho0 c_s^2
+  std::optional<double> G;      ///< numerical shear modulus of the elastic law [Pa], > 0; unset: 0.3 rho0 c_s^2
   bool operator==(const Rheology&) const = default;
 };
 

@@ -3,6 +3,13 @@
 #include <cmath>
 
 namespace talus {
+namespace {
+
+/// Shear modulus over rho0 c_s^2, which is the bulk modulus of the equation of state: a Poisson number of 0.36. Fronts
+/// come out too far in proportion to 1/G, since soil at its yield stress is strained by tau_y/G first.
+constexpr double default_shear_share = 0.3;
+
+}  // namespace
 
 std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Material>& materials,
                                                             const Rheology& rheology, double c_s) {
@@ -10,7 +17,7 @@ std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Ma
   for (const Material& m : materials)
     soils.push_back({.eos = EquationOfState::weakly_compressible(m.rho0, c_s),
                      .eta = m.eta,
-                     .G = rheology.G.value_or(0.1 * m.rho0 * c_s * c_s),
+                     .G = rheology.G.value_or(default_shear_share * m.rho0 * c_s * c_s),
                      .mu_i = m.mu_i.value_or(InertialFriction<>{})});
   return soils;
 }

@@ -34,13 +34,14 @@ HWY_ATTR void wall_stress_loop(PackedFlow& f, const FlowConstants& k, WallPartic
     load_groups(f.walls.place.data() + 4 * i, x.x, x.y, normal.x, normal.y);
     auto sum = WallStressSum<Lanes>::zero();
     for_neighbours<false>(x, f.soil.motion.data(), neighbours(f.wall_soil, c), W, [&](const Pair& pair) HWY_ATTR {
-      const Lanes p(f.soil.stress[4 * pair.j + 3]), rho(f.soil.density[4 * pair.j + 2]), q(f.soil.q[pair.j]);
-      sum.add(pair.kernel, {tensor_of(f.soil.stress, pair.j), p, rho, q}, dot(g, pair.r), per_c2);
+      const PackedSoil& soil = f.soil;
+      const Lanes p(soil.stress[4 * pair.j + 3]), rho(soil.density[4 * pair.j + 2]), q(soil.q[pair.j]);
+      const Lanes cohesion(soil.c[pair.j]), tan_phi(soil.tan_phi[pair.j]);
+      sum.add(pair.kernel, {tensor_of(soil.stress, pair.j), p, rho, q, cohesion, tan_phi}, dot(g, pair.r), per_c2);
     });
     const Lanes slip = load(f.walls.slip.data() + i);
-    const WallStress<Lanes> wall =
-        sum.value(k.numerics.tension_cutoff, normal, slip == Lanes(slip_code(WallSlip::no_slip)),
-                  slip == Lanes(slip_code(WallSlip::free_slip)));
+    const WallStress<Lanes> wall = sum.value(k, normal, slip == Lanes(slip_code(WallSlip::no_slip)),
+                                             slip == Lanes(slip_code(WallSlip::free_slip)));
     Lanes sxx, syy, sxy, depth;
     load_groups(f.walls.stress.data() + 4 * i, sxx, syy, sxy, depth);
     store_groups(wall.s.xx, wall.s.yy, wall.s.xy, depth, f.walls.stress.data() + 4 * i, count);

@@ -23,7 +23,7 @@ struct Numerics {
   double h_over_dx = 1.5;                            ///< smoothing length over particle spacing [-], in [1, 2]
   std::optional<double> c_s;                         ///< speed of sound [m/s], > 0; unset: 10 sqrt(2 g H)
   double alpha = 0.1;                                ///< artificial viscosity, linear term [-], >= 0
-  VelocityJump velocity_jump = VelocityJump::whole;  ///< of two particles, that the artificial viscosity acts on
+  VelocityJump velocity_jump = VelocityJump::reconstructed;  ///< of two particles, that the artificial viscosity acts on
   double beta = 0.0;                                 ///< artificial viscosity, quadratic term [-], >= 0
   Continuity continuity = Continuity::volume;
   /// The diffusion leaves a resting pile alone and keeps replicate runs together: on the illustrative slope at dx = 0.4

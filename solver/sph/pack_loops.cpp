@@ -180,6 +180,12 @@ StepExtrema move_soil(PackedFlow& f, const FlowConstants& k, Soil& soil, double 
   return HWY_DYNAMIC_DISPATCH(move_soil_loop)(f, k, soil, dt, midpoint_velocity, range);
 }
 
+void pack_strength(PackedFlow& f, const Soil& soil) {
+  const auto narrow_to = [](double value) { return static_cast<float>(value); };
+  std::ranges::transform(soil.c, f.soil.c.begin(), narrow_to);
+  std::ranges::transform(soil.tan_phi, f.soil.tan_phi.begin(), narrow_to);
+}
+
 void pack_walls(PackedFlow& f, const FlowConstants& k, const WallParticles& walls) {
   // Walls beyond the fixed point's box are too far from any soil to matter.
   const auto fixed = [&](double x, double lo) {

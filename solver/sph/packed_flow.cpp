@@ -28,7 +28,8 @@ void PackedSoil::resize(std::size_t n) {
   n_ = n;
   resize_places(motion, n);
   for (auto* group : {&density, &stress, &strain}) group->assign(4 * (n + padding), 0.0f);
-  for (auto* array : {&q, &ax, &ay, &drho, &dtxx, &dtyy, &dtxy, &gamma_dot}) array->assign(n + padding, 0.0f);
+  for (auto* array : {&q, &c, &tan_phi, &ax, &ay, &drho, &dtxx, &dtyy, &dtxy, &gamma_dot})
+    array->assign(n + padding, 0.0f);
 }
 
 void PackedWalls::resize(std::size_t n) {

@@ -36,11 +36,12 @@ struct FixedPoint {
 /// Place n, one behind the last of n particles, is far from everything and has no volume; so are some more, so that
 /// whole vectors can be loaded from anywhere. Integers are kept as bit patterns of floats.
 struct PackedSoil {
-  std::vector<float> motion;   ///< x, y [quantum, as integers], vx, vy [m/s]
-  std::vector<float> density;  ///< m/rho [m2], rho/rho0 - 1 less its hydrostatic part [-], rho [kg/m3], material
-  std::vector<float> stress;   ///< sxx, syy, sxy, p [Pa]
-  std::vector<float> strain;   ///< half the strain rate exx, eyy, exy [m/s per quantum], unused
-  std::vector<float> q;        ///< rho/rho0 - 1 [-], not grouped
+  std::vector<float> motion;      ///< x, y [quantum, as integers], vx, vy [m/s]
+  std::vector<float> density;     ///< m/rho [m2], rho/rho0 - 1 less its hydrostatic part [-], rho [kg/m3], material
+  std::vector<float> stress;      ///< sxx, syy, sxy, p [Pa]
+  std::vector<float> strain;      ///< half the strain rate exx, eyy, exy [m/s per quantum], unused
+  std::vector<float> q;           ///< rho/rho0 - 1 [-], not grouped
+  std::vector<float> c, tan_phi;  ///< as in Soil, not grouped; packed with the neighbour lists
   std::vector<float> ax, ay, drho, dtxx, dtyy, dtxy, gamma_dot;  ///< of the last evaluation, as in Soil
 
   void resize(std::size_t n);

@@ -21,6 +21,8 @@ bool limit_pair_loops(const std::string& name);
 
 /// Packs position, velocity and density of soil particles as they will be after `ahead` [s] at the present rates.
 void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Range range);
+/// Packs what does not change of the soil while its order stays: cohesion and friction.
+void pack_strength(PackedFlow& f, const Soil& soil);
 /// Packs what does not change of all walls: place, normal, depth and friction.
 void pack_walls(PackedFlow& f, const FlowConstants& k, const WallParticles& walls);
 

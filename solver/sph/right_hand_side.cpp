@@ -141,12 +141,12 @@ struct Passes {
   void update_wall_stress(std::size_t w) const {
     auto sum = WallStressSum<double>::zero();
     for_neighbours(cells.soil, soil, walls.position(w), support2, [&](std::size_t j, Vector<double> r, double r2) {
-      sum.add(kernel.W(std::sqrt(r2)), {stress(j), soil.p[j], density(j), q(j)}, dot(vector(k.g), r),
-              1.0 / (k.c_s * k.c_s));
+      sum.add(kernel.W(std::sqrt(r2)), {stress(j), soil.p[j], density(j), q(j), soil.c[j], soil.tan_phi[j]},
+              dot(vector(k.g), r), 1.0 / (k.c_s * k.c_s));
     });
     const WallSlip slip = boundary(w).slip;
-    const WallStress<double> wall = sum.value(k.numerics.tension_cutoff, vector(walls.normal(w)),
-                                              slip == WallSlip::no_slip, slip == WallSlip::free_slip);
+    const WallStress<double> wall =
+        sum.value(k, vector(walls.normal(w)), slip == WallSlip::no_slip, slip == WallSlip::free_slip);
     walls.p[w] = wall.p;
     walls.density_ratio[w] = wall.density_ratio;
     walls.sxx[w] = wall.s.xx;

@@ -27,8 +27,8 @@ struct ClusterPoint {
   Lanes volume;  ///< [m3/m]
 
   HWY_INLINE Lanes q() const { return load(f.soil.q.data() + i); }
-  HWY_INLINE Lanes tan_phi() const { return state(soil.tan_phi); }
-  HWY_INLINE Lanes c() const { return state(soil.c); }
+  HWY_INLINE Lanes tan_phi() const { return load(f.soil.tan_phi.data() + i); }
+  HWY_INLINE Lanes c() const { return load(f.soil.c.data() + i); }
   template <class Get>
   HWY_INLINE Lanes constant(Get&& get) const {
     if (k.soils.size() == 1) return Lanes(get(k.soils[0]));

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 
+#include "material/constitutive_models-inl.hpp"
 #include "math/tensor-inl.hpp"
 #include "sph/flow_constants.hpp"
 
@@ -85,20 +86,25 @@ struct WallLaw {
   }
 };
 
-/// The most that the deviatoric stress may grow on its way to a wall particle [-].
-inline constexpr double max_deviator_growth = 3.0;
+/// The most that a viscous stress may grow on its way to a wall particle [-].
+inline constexpr double max_viscous_growth = 3.0;
 
-/// By how much the soil's deviatoric stress grows on its way to a wall particle: as the pressure does there, at most
-/// threefold. Under its own weight a layer carries shear in proportion to its depth, as it carries pressure;
-/// extrapolated as a constant the shear would lack that of half a support, and a layer of cohesionless soil would slide
-/// at 23 instead of 25 degrees. For rough walls only: along a wall that is smoother than the soil, the wall's friction
-/// bounds the shear.
+/// By how much the soil's deviatoric stress grows on its way to a wall particle. Under its own weight a layer carries
+/// shear in proportion to its depth, as it carries pressure; extrapolated as a constant the shear would lack that of
+/// half a support, and a layer of cohesionless soil would slide at 23 instead of 25 degrees. So it grows as the
+/// pressure does, up to the yield stress that the soil would have at the wall particle; what exceeds the yield stress
+/// in the soil is viscous and grows at most threefold. For rough walls only: along a wall that is smoother than the
+/// soil, the wall's friction bounds the shear.
+/// @param size    of the soil's deviator there, sqrt(t:t/2) [Pa]
 /// @param p_wall  extrapolated pressure [Pa]
 /// @param p_soil  the soil's, interpolated without its hydrostatic part [Pa]
+/// @param yield_wall, yield_soil  yield stress at these pressures [Pa]
 template <class Real>
-HWY_INLINE Real deviator_growth(Real p_wall, Real p_soil) {
-  const Real growth = min(max(p_wall / p_soil, Real(0.0)), Real(max_deviator_growth));
-  return select(p_soil > Real(0.0), growth, Real(1.0));
+HWY_INLINE Real deviator_growth(Real size, Real p_wall, Real p_soil, Real yield_wall, Real yield_soil) {
+  const Real growth = select(p_soil > Real(0.0), max(p_wall / p_soil, Real(0.0)), Real(1.0));
+  const Real viscous = max(size - yield_soil, Real(0.0)), plastic = size - viscous;
+  const Real at_wall = fma(min(growth, Real(max_viscous_growth)), viscous, min(growth * plastic, yield_wall));
+  return select(size > Real(0.0), at_wall / size, Real(1.0));
 }
 
 /// A wall particle that sees less of the soil than this share of W(0) sees nothing: in single precision the inverse of
@@ -114,21 +120,23 @@ struct WallStress {
 };
 
 /// Shepard interpolation of the soil's stress to a wall particle, pressure with the hydrostatic term of Adami 2012:
-/// p_w = sum_f (p_f + rho_f g.r_wf) W / sum_f W; the deviator as sum_f t_f W / sum_f W, enlarged by deviator_growth.
+/// p_w = sum_f (p_f + rho_f g.r_wf) W / sum_f W; the deviator as sum_f t_f W / sum_f W, enlarged by deviator_growth;
+/// cohesion and friction without more.
 template <class Real>
 struct WallStressSum {
-  Real weight, p, p_soil, q;
+  Real weight, p, p_soil, q, c, tan_phi;
   Deviator<Real> t;
 
   static HWY_INLINE WallStressSum zero() {
     const Real zero(0.0);
-    return {zero, zero, zero, zero, {zero, zero, zero}};
+    return {zero, zero, zero, zero, zero, zero, {zero, zero, zero}};
   }
 
   /// What a soil particle gives.
   struct Source {
     Symmetric<Real> s;  ///< Cauchy stress [Pa]
     Real p, rho, q;     ///< pressure [Pa], density [kg/m3], rho/rho0 - 1 [-]
+    Real c, tan_phi;    ///< cohesion [Pa], tangent of the friction angle [-]
   };
 
   /// @param W    kernel over its normalisation
@@ -138,17 +146,22 @@ struct WallStressSum {
     p_soil = fma(W, f.p, p_soil);
     p = fma(W, fma(f.rho, g_r, f.p), p);
     q = fma(W, fma(g_r, per_c2, f.q), q);
+    c = fma(W, f.c, c);
+    tan_phi = fma(W, f.tan_phi, tan_phi);
     t = fma(W, Deviator<Real>{f.s.xx + f.p, f.s.yy + f.p, f.s.xy}, t);
   }
 
   /// @param rough, smooth  where the boundary has WallSlip::no_slip, WallSlip::free_slip
   template <class Mask>
-  HWY_INLINE WallStress<Real> value(bool tension_cutoff, Vector<Real> normal, Mask rough, Mask smooth) const {
+  HWY_INLINE WallStress<Real> value(const FlowConstants& k, Vector<Real> normal, Mask rough, Mask smooth) const {
     const auto covered = weight > Real(min_kernel_sum);
     const Real inverse = select_or_zero(covered, Real(1.0) / weight);
     Real p_wall = p * inverse;
-    if (tension_cutoff) p_wall = max(p_wall, Real(0.0));
-    const Real share = inverse * select(rough, deviator_growth(p_wall, p_soil * inverse), Real(1.0));
+    if (k.numerics.tension_cutoff) p_wall = max(p_wall, Real(0.0));
+    const Real p_mean = p_soil * inverse, factor(yield_factor(k.rheology.shear_rate));
+    const auto yield = [&](Real at) HWY_ATTR { return factor * yield_stress(c * inverse, tan_phi * inverse, at); };
+    const Real growth = deviator_growth(magnitude(t) * inverse, p_wall, p_mean, yield(p_wall), yield(p_mean));
+    const Real share = inverse * select(rough, growth, Real(1.0));
     Symmetric<Real> s{fms(t.xx, share, p_wall), fms(t.yy, share, p_wall), t.xy * share};
     if (any(smooth)) s = select(smooth, mirrored(s, normal), s);
     return {s, p_wall, select_or_zero(covered, fma(q, inverse, Real(1.0)))};
