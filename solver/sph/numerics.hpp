@@ -20,11 +20,12 @@ struct Numerics {
   /// fine spacings too: on the illustrative slope at dx = 0.1 m the front's noise is 4.5 mm, against 32 mm with the
   /// cubic spline and h = 1.2 dx.
   KernelShape kernel = KernelShape::wendland_c2;
-  double h_over_dx = 1.5;                            ///< smoothing length over particle spacing [-], in [1, 2]
-  std::optional<double> c_s;                         ///< speed of sound [m/s], > 0; unset: 10 sqrt(2 g H)
-  double alpha = 0.1;                                ///< artificial viscosity, linear term [-], >= 0
-  VelocityJump velocity_jump = VelocityJump::reconstructed;  ///< of two particles, that the artificial viscosity acts on
-  double beta = 0.0;                                 ///< artificial viscosity, quadratic term [-], >= 0
+  double h_over_dx = 1.5;     ///< smoothing length over particle spacing [-], in [1, 2]
+  std::optional<double> c_s;  ///< speed of sound [m/s], > 0; unset: 10 sqrt(2 g H)
+  double alpha = 0.1;         ///< artificial viscosity, linear term [-], >= 0
+  VelocityJump velocity_jump =
+      VelocityJump::reconstructed;  ///< of two particles, that the artificial viscosity acts on
+  double beta = 0.0;                ///< artificial viscosity, quadratic term [-], >= 0
   Continuity continuity = Continuity::volume;
   /// The diffusion leaves a resting pile alone and keeps replicate runs together: on the illustrative slope at dx = 0.4
   /// m a change of tan(phi) by 1e-6 moves the front by 6e-5 m with it and by 0.018 m with the Shepard filter.

@@ -43,17 +43,37 @@ TEST(Wall, ExtrapolationIsExactForHydrostaticPressure) {
   auto sum = WallStressSum<double>::zero();
   for (const Vector<double> x : {Vector<double>{0.02, 0.05}, {-0.1, 0.05}, {0.04, 0.15}}) {
     const double p = 5000 - 2000 * 9.81 * x.y;
-    sum.add(1.0 / (1.0 + dot(x, x)), {{-p, -p, 0}, p, 2000, 0}, dot(g, wall - x), 1.0 / (50 * 50));
+    sum.add(1.0 / (1.0 + dot(x, x)), {{-p, -p, 0}, p, 2000, 0, 1000, 0.5}, dot(g, wall - x), 1.0 / (50 * 50));
   }
   EXPECT_NEAR(sum.p / sum.weight, 5000 + 2000 * 9.81 * 0.05, 1e-9);
-  EXPECT_NEAR(sum.value(true, {0, 1}, true, false).p, 5000 + 2000 * 9.81 * 0.05, 1e-9);
+  EXPECT_NEAR(sum.value(constants(0.1, {0, -9.81}, {}), {0, 1}, true, false).p, 5000 + 2000 * 9.81 * 0.05, 1e-9);
 }
 
-TEST(Wall, DeviatorGrowsWithThePressureUpToThreefold) {
-  EXPECT_DOUBLE_EQ(deviator_growth(150.0, 100.0), 1.5);
-  EXPECT_DOUBLE_EQ(deviator_growth(900.0, 100.0), 3.0);
-  EXPECT_DOUBLE_EQ(deviator_growth(-5.0, 100.0), 0.0);
-  EXPECT_DOUBLE_EQ(deviator_growth(50.0, 0.0), 1.0);
+TEST(Wall, DeviatorGrowsWithThePressureUpToTheYieldStress) {
+  // size, pressure at the wall and in the soil, yield stress at these
+  EXPECT_DOUBLE_EQ(deviator_growth(20.0, 150.0, 100.0, 75.0, 50.0), 1.5);   // does not yield
+  EXPECT_DOUBLE_EQ(deviator_growth(50.0, 900.0, 100.0, 450.0, 50.0), 9.0);  // friction alone, yields
+  EXPECT_DOUBLE_EQ(deviator_growth(40.0, 900.0, 100.0, 40.0, 40.0), 1.0);   // cohesion alone, yields
+  EXPECT_DOUBLE_EQ(deviator_growth(25.0, 900.0, 100.0, 40.0, 40.0), 1.6);   // cohesion alone, yields at the wall
+  EXPECT_DOUBLE_EQ(deviator_growth(20.0, -5.0, 100.0, 40.0, 40.0), 0.0);
+  EXPECT_DOUBLE_EQ(deviator_growth(20.0, 50.0, 0.0, 40.0, 40.0), 1.0);
+  EXPECT_DOUBLE_EQ(deviator_growth(0.0, 50.0, 20.0, 40.0, 40.0), 1.0);
+}
+TEST(Wall, ViscousStressGrowsWithThePressureUpToThreefold) {
+  EXPECT_DOUBLE_EQ(deviator_growth(20.0, 150.0, 100.0, 0.0, 0.0), 1.5);
+  EXPECT_DOUBLE_EQ(deviator_growth(20.0, 900.0, 100.0, 0.0, 0.0), 3.0);
+  EXPECT_DOUBLE_EQ(deviator_growth(70.0, 900.0, 100.0, 450.0, 50.0), (450.0 + 3.0 * 20.0) / 70.0);
+}
+
+TEST(Wall, ShearAtTheWallIsTheYieldStressOfTheSoilThere) {
+  // All of the soil yields: sxy = c + p tan(phi), whatever the pressures.
+  const double c = 800, tan_phi = 0.4;
+  auto sum = WallStressSum<double>::zero();
+  for (const double p : {1000.0, 3000.0, 5000.0})
+    sum.add(1.0, {{-p, -p, c + p * tan_phi}, p, 2000, 0, c, tan_phi}, 9.81 * 0.1, 1e-4);
+  const WallStress<double> wall = sum.value(constants(0.1, {0, -9.81}, {}), {0, 1}, true, false);
+  EXPECT_DOUBLE_EQ(wall.p, 3000 + 2000 * 9.81 * 0.1);
+  EXPECT_NEAR(wall.s.xy, c + wall.p * tan_phi, 1e-9);
 }
 
 /// Soil sliding along a flat wall at 3 m/s under pressure; returns it evaluated.

@@ -111,7 +111,8 @@ def escarpment(raw):
 def scarp(raw):
     ground = clip(escarpment(raw), 90, 800)
     slip = arc(ground, 155, 228, 12)
-    material = {"name": "slope debris", "density_kg_m3": 1900, "friction_angle_deg": 25, "cohesion_Pa": 500}
+    material = {"name": "slope debris", "density_kg_m3": 1900, "friction_angle_deg": 25, "cohesion_Pa": 500,
+                "viscosity_Pa_s": 1500}
     save("scarp", ground, slip, case(
         "scarp", "Scarp surveyed by lidar",
         "Ground returns of an airborne lidar survey in a strip 0.3 m wide. The slip surface is assumed.",
@@ -121,7 +122,8 @@ def scarp(raw):
 def ledges(raw):
     ground = clip(escarpment(raw), 430, 760)
     slip = arc(ground, 463, 508, 6)
-    material = {"name": "soft clay", "density_kg_m3": 1700, "friction_angle_deg": 14, "cohesion_Pa": 1000}
+    material = {"name": "soft clay", "density_kg_m3": 1700, "friction_angle_deg": 14, "cohesion_Pa": 1000,
+                "viscosity_Pa_s": 1000}
     save("ledges", ground, slip, case(
         "ledges", "Ledges surveyed by lidar",
         "Lower part of the survey of the case scarp: ledges of 6 and 7 m. The slip surface is assumed.",
@@ -135,7 +137,8 @@ def river_bank(raw):
     strip = np.abs(east - 90) < 1.5
     ground = clip(unique_chainage(160 - north[strip], points[strip, 2]), 10, 130)
     slip = arc(ground, 46.6, 62, 3.2)
-    material = {"name": "soft clay", "density_kg_m3": 1500, "friction_angle_deg": 12, "cohesion_Pa": 500}
+    material = {"name": "soft clay", "density_kg_m3": 1500, "friction_angle_deg": 12, "cohesion_Pa": 500,
+                "viscosity_Pa_s": 1000}
     save("river-bank", ground, slip, case(
         "river-bank", "River bank surveyed by lidar",
         "Ground returns of an airborne lidar survey in a strip 3 m wide. The slide goes to the left. "
@@ -153,7 +156,7 @@ def valley_side(raw):
     save("valley-side", ground, slip, case(
         "valley-side", "Valley side on a national grid",
         "Elevations in whole metres on a grid of 2 m. Chainage is the easting. The slip surface is assumed.",
-        1.0, material, 100, numerics={"sound_speed_m_s": 120, "artificial_viscosity_jump": "reconstructed"}))
+        1.0, material, 100, numerics={"sound_speed_m_s": 120}))
 
 
 def alpine(raw):
@@ -161,11 +164,12 @@ def alpine(raw):
     cells = np.arange(50, 110)
     ground = np.column_stack([25 * cells + 12.5, grid(raw / "dem.tif")[210, cells]])
     slip = arc(ground, 1662.5, 1812.5, 25)
-    material = {"name": "broken rock", "density_kg_m3": 2000, "friction_angle_deg": 32}
+    material = {"name": "broken rock", "density_kg_m3": 2000, "friction_angle_deg": 32,
+                "mu_i": {"high_rate_friction_angle_deg": 41.6, "grain_diameter_m": 0.3}}
     save("alpine", ground, slip, case(
         "alpine", "Alpine valley with a cliff",
         "Elevations on a grid of 25 m; the slide falls over a cliff of 270 m. The slip surface is assumed.",
-        3.0, material, 80, numerics={"sound_speed_m_s": 600, "artificial_viscosity_jump": "reconstructed"}))
+        3.0, material, 80, numerics={"sound_speed_m_s": 600}))
 
 
 def hill(raw):
