@@ -47,6 +47,10 @@ LoadedCase load_case(const std::filesystem::path& path, std::span<const std::str
 LoadedCase load_case(Json document, const std::filesystem::path& directory,
                      std::span<const std::string> overrides = {});
 
+/// JSON pointer of the section that states a material of the model: /material of the default one, otherwise that of the
+/// first outline of its kind.
+std::string material_pointer(const Model& model, std::size_t material);
+
 /// FNV-1a (64 bits, 16 hex digits) over the resolved case with its keys sorted, less what decides no run: title,
 /// description and those keys of the study that only count or summarise runs. The seed is left out too: it stands
 /// beside the hash in every record, and may be given on the command line.

@@ -90,7 +90,8 @@ void read_inertial_friction(ObjectReader& in, MaterialInput& m) {
 /// Viscosity or mu(I). A layer that states one of them drops what it would have inherited of the other.
 void read_rate_dependence(ObjectReader& in, MaterialInput& m) {
   in.number("viscosity_Pa_s", m.eta, {"Pa s", 0.0, 1e9},
-            {"Viscosity once the soil has yielded; not together with mu_i.", "rheometer; [Z20] Eq. 4"});
+            {"Viscosity once the soil has yielded; not together with mu_i.",
+             "back-analysis or rheometer, talus validate lists values by soil type; [Z20] Eq. 4"});
   in.exclude("mu_i", "viscosity_Pa_s");
   in.object("mu_i",
             "Friction that grows with the shear rate instead of a viscosity: mu(I) = mu_s + (mu_2 - mu_s) I/(I_0 + I), "

@@ -69,19 +69,18 @@ void warn(const Usual& usual, double value, const std::string& section, std::vec
   warnings.push_back({section + "/" + usual.key, message});
 }
 
-/// Where a material stands in the case: the default one, or that of the first outline of its kind.
-std::string section_of(const Model& model, int material) {
-  const auto part = std::ranges::find(model.slide, material, &SlidePart::material);
+}  // namespace
+
+std::string material_pointer(const Model& model, std::size_t material) {
+  const auto part = std::ranges::find(model.slide, static_cast<int>(material), &SlidePart::material);
   return material == 0 ? "/material" : "/slide/outlines/" + std::to_string(part - model.slide.begin()) + "/material";
 }
-
-}  // namespace
 
 void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings) {
   for (std::size_t k = 0; k < model.materials.size(); ++k) {
     const Material& m = model.materials[k];
     const Material& base = model.materials.front();  // a layer that inherits a value is not warned of it again
-    const std::string section = section_of(model, static_cast<int>(k));
+    const std::string section = material_pointer(model, k);
     if (k == 0 || m.rho0 != base.rho0) warn(density, m.rho0, section, warnings);
     if (k == 0 || m.phi != base.phi) warn(friction_angle, degrees(m.phi), section, warnings);
     if (k == 0 || m.c != base.c) warn(cohesion, m.c, section, warnings);

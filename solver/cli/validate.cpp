@@ -11,7 +11,10 @@
 #include "case/ground_report.hpp"
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
+#include "material/soil_types.hpp"
+#include "math/angle.hpp"
 #include "particles/geometry.hpp"
+#include "run/dissipation.hpp"
 #include "run/realization.hpp"
 #include "run/warnings.hpp"
 #include "simulation/simulation.hpp"
@@ -94,6 +97,45 @@ Json slide_json(const GroundReport& r, const Model& model) {
           {"measured_from_m", model.terrain.run_out.from + model.terrain.origin.x}};
 }
 
+/// mu_2 of a type of soil as an angle, on top of the friction of the case [deg].
+double high_rate_angle(const SoilType& type, const Model& model) {
+  return degrees(std::atan(std::tan(model.materials.front().phi) + type.delta_mu));
+}
+
+Json proposals_json(const Model& model) {
+  Json list = Json::array();
+  for (const SoilType& type : soil_types) {
+    Json proposal = {{"soil", type.name}, {"source", type.source}};
+    if (type.eta > 0.0) {
+      proposal["viscosity_Pa_s"] = type.eta;
+      proposal["range_Pa_s"] = {type.eta_low, type.eta_high};
+    } else {
+      proposal["mu_i"] = {{"high_rate_friction_angle_deg", high_rate_angle(type, model)},
+                          {"friction_rise", type.delta_mu},
+                          {"reference_inertial_number", type.I_0}};
+    }
+    list.push_back(proposal);
+  }
+  return list;
+}
+
+void print_proposals(const Model& model) {
+  std::printf(
+      "rate dependence    none is stated: the run-out then depends on the numerical dissipation, which falls with the\n"
+      "                   spacing. Measured or back-analysed values by soil type (key of material, value, range):\n");
+  for (const SoilType& type : soil_types) {
+    std::printf("  %-48s", type.name);
+    if (type.eta == 0.0)
+      std::printf("mu_i: high_rate_friction_angle_deg %.1f, reference_inertial_number %g", high_rate_angle(type, model),
+                  type.I_0);
+    else if (type.eta_low < type.eta_high)
+      std::printf("viscosity_Pa_s %g (%g to %g)", type.eta, type.eta_low, type.eta_high);
+    else
+      std::printf("viscosity_Pa_s %g (one value)", type.eta);
+    std::printf("\n      %s\n", type.source);
+  }
+}
+
 Json to_json(const LoadedCase& loaded, const Demand& d) {
   Json out = {{"valid", true},
               {"title", loaded.value.title},
@@ -111,6 +153,7 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
   if (d.field)
     out["field"] = {
         {"terms", d.field->terms}, {"captured_variance", d.field->captured_variance}, {"cov_tan_phi", d.field->cov}};
+  if (lacks_rate_dependence(model)) out["rate_dependence_by_soil"] = proposals_json(model);
   out["warnings"] = to_json(loaded.warnings);
   return out;
 }
@@ -155,6 +198,7 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
     std::printf("captured variance  %.2f %% with %lld terms; coefficient of variation of tan(phi) %.3g\n",
                 100.0 * d.field->captured_variance, static_cast<long long>(d.field->terms), d.field->cov);
   std::printf("case hash          %s\n", loaded.hash.c_str());
+  if (lacks_rate_dependence(loaded.value.model)) print_proposals(loaded.value.model);
   print_warnings(loaded.warnings);
 }
 

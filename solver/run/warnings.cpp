@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <string_view>
 
+#include "run/dissipation.hpp"
 #include "run/realization.hpp"
 #include "simulation/checks.hpp"
 
@@ -34,6 +36,7 @@ std::vector<Fault> warnings_before_run(const Case& c, const ParticlePlan& plan, 
   std::vector<Fault> warnings;
   for (const QualityReason& reason : assess(facts).reasons)
     warnings.push_back({pointer_of(reason.check), reason.message});
+  std::ranges::move(dissipation_warnings(c.model), std::back_inserter(warnings));
   if (c.field && field.captured_variance < little_variance) {
     char text[200];
     std::snprintf(

@@ -9,8 +9,8 @@
 
 namespace talus {
 
-/// What the checks of the result object to already, and a random field that captures little of its variance; to be
-/// printed and kept beside LoadedCase::warnings.
+/// What the checks of the result object to already, dissipation that the numerics decide (dissipation.hpp), and a
+/// random field that captures little of its variance; to be printed and kept beside LoadedCase::warnings.
 std::vector<Fault> warnings_before_run(const Case& c, const ParticlePlan& plan, const FieldSummary& field);
 
 /// The same, with particles and field made for it.

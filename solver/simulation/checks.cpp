@@ -152,6 +152,16 @@ constexpr Check checks[] = {
        return "the fixed time step has the Courant number " + rounded(*f.courant) +
               ", where the integrator is stable up to " + rounded(f.courant_limit);
      }},
+    // The viscous part of the same limit (Morris, Fox & Zhu 1997, J. Comput. Phys. 136, whose 0.125 bounds the Courant
+    // step).
+    {"unstable_time_step",
+     [](const RunFacts& f) { return f.diffusion_number ? Value(*f.diffusion_number / f.courant_limit) : Value(); },
+     1.0,
+     {},
+     [](const RunFacts& f, double) {
+       return "the fixed time step has the diffusion number nu dt/h^2 = " + rounded(*f.diffusion_number) +
+              " with the largest viscosity, where the integrator is stable up to " + rounded(f.courant_limit);
+     }},
 };
 
 /// Not a number is beyond every limit.
@@ -185,7 +195,10 @@ RunFacts facts_before_run(const Model& model, std::span<const Vec2> starts) {
   facts.steady_contact = model.walls.contact == WallContact::always;
   facts.rows = rows_across(starts, model.dx);
   const StepBounds bounds = step_bounds(model, flow_constants(model));
-  if (model.time.fixed_step) facts.courant = *model.time.fixed_step * bounds.c / bounds.h;
+  if (model.time.fixed_step) {
+    facts.courant = *model.time.fixed_step * bounds.c / bounds.h;
+    if (bounds.nu > 0.0) facts.diffusion_number = *model.time.fixed_step * bounds.nu / (bounds.h * bounds.h);
+  }
   facts.courant_limit = stable_cfl(model.numerics.integrator);
   return facts;
 }

@@ -12,7 +12,8 @@
 
 namespace talus {
 
-/// The largest Courant number at which an integrator is stable [-]; measured, see README.md.
+/// The largest Courant number c dt/h, and the largest diffusion number nu dt/h^2, at which an integrator is stable [-];
+/// measured, see README.md.
 constexpr double stable_cfl(Integrator integrator) { return integrator == Integrator::leapfrog ? 0.4 : 0.8; }
 
 /// Root-mean-square speed of a slide at rest over sqrt(|g| H), at most [-].
@@ -39,7 +40,8 @@ struct RunFacts {
   std::optional<double> rows = {};   ///< particles across the slide at the start
   std::optional<double> correlation_length = {};  ///< shortest, of a field that is not averaged over cells [m]
   std::optional<double> courant = {};             ///< of a fixed time step [-]
-  double courant_limit = 1.0;                     ///< of the integrator [-]
+  std::optional<double> diffusion_number = {};    ///< of a fixed time step, nu dt/h^2; unset without a viscosity [-]
+  double courant_limit = 1.0;                     ///< of the integrator, for both [-]
 };
 
 /// Every check that objects, in the order of the table in checks.cpp. Pure; thread-safe.

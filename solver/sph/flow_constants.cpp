@@ -22,6 +22,10 @@ std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Ma
   return soils;
 }
 
+double artificial_shear_viscosity(const FlowConstants& k, double rho0) {
+  return rho0 * k.numerics.alpha * k.c_s * k.h / 8.0;
+}
+
 std::vector<WallFriction> wall_friction(std::span<const Boundary> boundaries) {
   std::vector<WallFriction> walls;
   for (const Boundary& b : boundaries) {

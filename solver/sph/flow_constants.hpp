@@ -44,6 +44,11 @@ struct FlowConstants {
 std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Material>& materials,
                                                             const Rheology& rheology, double c_s);
 
+/// The shear viscosity for which the linear term of the artificial viscosity stands where it acts on the whole approach
+/// of two particles: rho alpha c_s h/8 in two dimensions (Monaghan 2005, Rep. Prog. Phys. 68). [Pa s]
+/// @param rho0  reference density of the soil [kg/m3]
+double artificial_shear_viscosity(const FlowConstants& k, double rho0);
+
 std::vector<WallFriction> wall_friction(std::span<const Boundary> boundaries);
 
 }  // namespace talus

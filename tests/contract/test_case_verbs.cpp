@@ -4,10 +4,12 @@
 #include <sys/wait.h>
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
 namespace {
@@ -47,6 +49,30 @@ TEST(Validate, SoundCase) {
   EXPECT_GT(json["field"]["captured_variance"], 0.0);
   EXPECT_EQ(json["hash"].get<std::string>().size(), 16u);
   EXPECT_TRUE(json["warnings"].is_array());
+}
+
+TEST(Validate, ListsTheRateDependenceOfSoilTypesWhereNoneIsStated) {
+  const std::string command = "validate " + std::string(TALUS_SOURCE_DIR) +
+                              "/solver/cases/road-slope.json --set material.friction_angle_deg=30 "
+                              "--set material.viscosity_Pa_s=";
+  const auto proposals = nlohmann::json::parse(talus(command + "0 --json").out)["rate_dependence_by_soil"];
+  ASSERT_GT(proposals.size(), 3u);
+  for (const auto& proposal : proposals) {
+    EXPECT_NE(proposal["source"].get<std::string>().find_first_of("12"), std::string::npos) << proposal;
+    EXPECT_NE(proposal.contains("viscosity_Pa_s"), proposal.contains("mu_i")) << proposal;
+    if (!proposal.contains("mu_i")) continue;
+    // tan(mu_2) = tan(30 deg) + rise
+    const double mu_2 =
+        std::tan(proposal["mu_i"]["high_rate_friction_angle_deg"].get<double>() * std::numbers::pi / 180);
+    EXPECT_NEAR(mu_2 - 1.0 / std::numbers::sqrt3, proposal["mu_i"]["friction_rise"].get<double>(), 1e-12);
+  }
+  const std::string text = talus(command + "0").out;
+  EXPECT_NE(text.find("numerical dissipation, which falls with the"), std::string::npos);
+  EXPECT_NE(text.find("viscosity_Pa_s 1500 (800 to 3000)"), std::string::npos);
+  EXPECT_NE(text.find("viscosity_Pa_s 50 (one value)"), std::string::npos);
+  EXPECT_NE(text.find("mu_i: high_rate_friction_angle_deg 39.9"), std::string::npos);
+  EXPECT_FALSE(nlohmann::json::parse(talus(command + "1500 --json").out).contains("rate_dependence_by_soil"));
+  EXPECT_EQ(talus(command + "1500").out.find("rate dependence"), std::string::npos);
 }
 
 TEST(Validate, SaysWhatWasMadeOfTheGround) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The parts of the documentation that follow from the programs: options in the man pages from --help, keys of a case in
-solver/README.md from its schema.
+solver/README.md from its schema, the rate dependence of types of soil in solver/material/README.md from `validate`.
 
 usage: generated.py TALUS TALUSD [--write]     compares (exit 1 and the first difference), or writes the parts
 Where it goes lies between two lines that contain `begin generated` and `end generated`.
@@ -11,6 +11,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 HELP_COLUMN = 30  # CLI11 begins descriptions here
@@ -116,6 +117,34 @@ def case_reference():
     return ["", "| key | meaning |", "|---|---|"] + case_keys(schema) + [""]
 
 
+def plain(number):
+    return f"{number:.6g}"
+
+
+def soil_types(talus):
+    """What `talus validate` proposes for a slope that states no rate dependence."""
+    case = {"title": "slope", "particle_spacing_m": 0.5, "terrain": {"bed_m": [[0, 4], [8, 0], [60, 0]]},
+            "slide": {"outlines": [{"outline_m": [[0, 4], [8, 0], [10, 0], [4, 7], [0, 7]]}]},
+            "material": {"density_kg_m3": 2000, "friction_angle_deg": 25}, "time": {"end_s": 3}}
+    with tempfile.TemporaryDirectory() as directory:
+        path = pathlib.Path(directory) / "case.json"
+        path.write_text(json.dumps(case))
+        done = subprocess.run([talus, "validate", path, "--json"], check=True, capture_output=True, text=True)
+    lines = ["", "| soil | value | range | source |", "|---|---|---|---|"]
+    for soil in json.loads(done.stdout)["rate_dependence_by_soil"]:
+        if "mu_i" in soil:
+            mu_i = soil["mu_i"]
+            value = (f"mu(I), mu_2 - mu_s = {plain(mu_i['friction_rise'])}, "
+                     f"I_0 = {plain(mu_i['reference_inertial_number'])}")
+            spread = "-"
+        else:
+            low, high = soil["range_Pa_s"]
+            value = f"{plain(soil['viscosity_Pa_s'])} Pa s"
+            spread = f"{plain(low)} to {plain(high)} Pa s" if low < high else "one value"
+        lines.append(f"| {soil['soil']} | {value} | {spread} | {soil['source']} |")
+    return lines + [""]
+
+
 def with_part(text, part):
     """The text with what lies between its two marks replaced."""
     lines = text.splitlines()
@@ -135,7 +164,7 @@ def exit_codes_differ(page, help_text):
 def main():
     talus, talusd, *mode = sys.argv[1:]
     parts = {"deploy/man/talus.1": talus_commands(talus), "deploy/man/talusd.8": options(help_of(talusd)),
-             "solver/README.md": case_reference()}
+             "solver/README.md": case_reference(), "solver/material/README.md": soil_types(talus)}
     bad = 0
     for name, part in parts.items():
         path = SOURCE / name

@@ -60,7 +60,8 @@ class Run(Directory):
         return quality
 
     def test_a_sound_run_says_nothing(self):
-        quality, lines = self.verdict("particle_spacing_m=0.8")
+        quality, lines = self.verdict("particle_spacing_m=0.8", "material.viscosity_Pa_s=1500",
+                                      "numerics.artificial_viscosity_jump=reconstructed")
         self.assertEqual(quality, {"verdict": "sound", "reasons": []})
         self.assertTrue(self.result["at_rest"])
         self.assertEqual(lines[0], "distances from x = 0 m to the right")
@@ -223,7 +224,9 @@ class Run(Directory):
         study = talus("study", SMALL, *settings, "--realizations", 1, "--out", self.dir / "b", "--no-figures")
         validate = talus("validate", SMALL, *settings)
         warnings = [line for line in validate.stderr.splitlines() if line.startswith("warning: ")]
-        self.assertEqual([line.split()[1] for line in warnings], ["/random_field", "/random_field"])
+        self.assertEqual([line.split()[1] for line in warnings], ["/random_field", "/material", "/random_field"])
+        self.assertIn("no rate-dependent dissipation is stated", warnings[1])
+        self.assertIn("talus validate lists values by soil type", warnings[1])
         for done in (run, study):
             self.assertEqual([line for line in done.stderr.splitlines() if line.startswith("warning: ")], warnings)
         kept = load(self.dir / "a/result.json")["warnings"]

@@ -11,7 +11,8 @@ Case slope(std::vector<std::string> changes) {
                          {"particle_spacing_m", 0.5},
                          {"terrain", {{"bed_m", {{0, 4}, {8, 0}, {60, 0}}}}},
                          {"slide", {{"outlines", {{{"outline_m", {{0, 4}, {8, 0}, {10, 0}, {4, 7}, {0, 7}}}}}}}},
-                         {"material", {{"density_kg_m3", 2000}, {"friction_angle_deg", 25}}},
+                         {"material", {{"density_kg_m3", 2000}, {"friction_angle_deg", 25}, {"viscosity_Pa_s", 1000}}},
+                         {"numerics", {{"artificial_viscosity_jump", "reconstructed"}}},
                          {"time", {{"end_s", 3}}},
                          {"random_field", {{"correlation_length_m", 2}, {"cov_tan_phi", 0.3}, {"terms", 50}}}};
   return load_case(document, "", changes).value;
@@ -55,6 +56,11 @@ TEST(WarningsBeforeRun, AFixedStepBeyondStability) {
   EXPECT_EQ(pointers({"numerics.sound_speed_m_s=100", "time.fixed_step_s=0.0056"}), "");
   EXPECT_EQ(pointers({"numerics.sound_speed_m_s=100", "time.fixed_step_s=0.0057"}), "/time/fixed_step_s ");
   EXPECT_EQ(pointers({"numerics.sound_speed_m_s=100", "time.fixed_step_s=0.0029", "numerics.integrator=leapfrog"}),
+            "/time/fixed_step_s ");
+  // The diffusion number nu dt/h^2 with nu = 1000/2 m2/s: 0.8 h^2/nu = 0.9 ms, half of it with the leapfrog.
+  EXPECT_EQ(pointers({"material.viscosity_Pa_s=1e6", "time.fixed_step_s=0.00089"}), "");
+  EXPECT_EQ(pointers({"material.viscosity_Pa_s=1e6", "time.fixed_step_s=0.00091"}), "/time/fixed_step_s ");
+  EXPECT_EQ(pointers({"material.viscosity_Pa_s=1e6", "time.fixed_step_s=0.00046", "numerics.integrator=leapfrog"}),
             "/time/fixed_step_s ");
 }
 

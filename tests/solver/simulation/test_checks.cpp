@@ -66,7 +66,13 @@ const std::vector<Row> rows{
        f.courant = 0.4 * x;
        f.courant_limit = 0.4;
      },
-     "Courant number 0.404, where the integrator is stable up to 0.4"}};
+     "Courant number 0.404, where the integrator is stable up to 0.4"},
+    {"unstable_time_step", 1.0, Verdict::doubtful,
+     [](RunFacts& f, double x) {
+       f.diffusion_number = 0.4 * x;
+       f.courant_limit = 0.4;
+     },
+     "nu dt/h^2 = 0.404 with the largest viscosity, where the integrator is stable up to 0.4"}};
 
 /// What `row.check` says of the value; nothing where it does not object.
 const QualityReason* objection(const Quality& quality, const Row& row) {
