@@ -65,7 +65,7 @@ std::optional<double> time_left(const Progress& p) {
 std::string progress_line(const Progress& p) {
   std::string text =
       std::to_string(p.done) + "/" + std::to_string(p.planned) + " done, " + std::to_string(p.failed) + " failed";
-  if (p.mean) text += format(", mean run-out %.2f", *p.mean);
+  if (p.mean) text += format(", mean farthest particle %.2f", *p.mean);
   if (p.mean_half_width) text += format(" +/- %.2f", *p.mean_half_width);
   if (p.mean) text += " m";
   if (const auto left = time_left(p)) text += ", " + duration(*left) + " left";
@@ -93,9 +93,9 @@ int terminal_width() {
 
 std::string study_report(const Json& study) {
   const std::string quality = study.contains("quality") ? quality_line(study.at("quality")) : "";
-  return (quality.empty() ? "" : quality + "\n") + summary_table(study) +
-         "\nrun-out distance [m] (influence_zone_m)\n" +
-         text_histogram(study.at("quantities").at(measure_table[0].key), 80);
+  return (quality.empty() ? "" : quality + "\n") + summary_table(study) + "\nrun-out distance of " +
+         leading_measure.label + " [m] (" + leading_measure.key + ")\n" +
+         text_histogram(study.at("quantities").at(leading_measure.key), 80);
 }
 
 std::string summary_table(const Json& study) {
@@ -113,14 +113,16 @@ std::string summary_table(const Json& study) {
   text += format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", "", "mean", "95 % interval", "stdev", "95 % interval",
                  "noise", "median", "q95");
   const auto at_least = [](bool lower_bound) { return std::string(lower_bound ? ">=" : ""); };
-  for (const auto& [key, q] : study.at("quantities").items()) {
+  for (const Measure* measure : reading_order()) {
+    if (!study.at("quantities").contains(measure->key)) continue;  // of an earlier version
+    const Json& q = study.at("quantities").at(measure->key);
     const Json* median = quantile(q, 0.5);
     const Json* high = quantile(q, 0.95);
     const auto of = [&](const Json* at) {
       return at == nullptr ? std::string("-") : at_least(at->value("at_least", false)) + number(at->at("value"));
     };
     text +=
-        format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", key.c_str(),
+        format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", measure->key,
                (at_least(q.value("mean_at_least", false)) + number(q.at("mean"))).c_str(),
                interval(q.at("mean_ci95")).c_str(), number(q.at("stdev")).c_str(), interval(q.at("stdev_ci95")).c_str(),
                number(q.at("noise_floor_stdev")).c_str(), of(median).c_str(), of(high).c_str());

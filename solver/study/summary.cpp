@@ -165,6 +165,7 @@ bool StudySummary::add(const Record& record) {
   phi_.push_back(record.mean_phi_deg);
   wall_clock_ += record.wall_clock;
   steps_ += record.steps;
+  if (!front_thickness_ && !std::isnan(record.front_thickness)) front_thickness_ = record.front_thickness;
   if (!captured_variance_) captured_variance_ = record.captured_variance;
   if (!shortest_ || zone < shortest_->second) shortest_ = {record.index, zone};
   if (!farthest_ || zone > farthest_->second) farthest_ = {record.index, zone};
@@ -230,10 +231,12 @@ Json StudySummary::json() const {
                 {"realizations", realizations_json()},
                 {"quality", quality_json()}};
   if (is_hypercube(plan_)) study["provenance"]["stratified_modes"] = plan_.study.stratified_modes;
-  for (const Measure& measure : measure_table) {
-    const MeasureSample of = sample(measure);
-    study["quantities"][measure.key] = quantity_json(of, sorted(of.values), given_edges(plan_, measure));
+  study["leading_quantity"] = leading_measure.key;
+  for (const Measure* measure : reading_order()) {
+    const MeasureSample of = sample(*measure);
+    study["quantities"][measure->key] = quantity_json(of, sorted(of.values), given_edges(plan_, *measure));
   }
+  study["front_thickness_m"] = json_of(front_thickness_);
   study["captured_variance"] = json_of(captured_variance_);
   study["mean_friction_angle_deg"] = mean_phi_json();
   study["noise_floor"] = replicates_json();
