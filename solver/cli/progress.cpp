@@ -9,6 +9,7 @@
 
 #include "study/quality_summary.hpp"
 #include "support/measures.hpp"
+#include "support/text.hpp"
 
 namespace talus::cli {
 namespace {
@@ -132,6 +133,9 @@ std::string summary_table(const Json& study) {
     text +=
         format("soil left the terrain in %lld realizations, from %.2f m on: they may have gone any distance beyond\n",
                censored->at("runs").get<long long>(), censored->at("from").get<double>());
+  text += "influence_zone_m: the farthest particle, the paper's influence zone\n";
+  if (const auto thickness = study.find("front_thickness_m"); thickness != study.end() && thickness->is_number())
+    text += "front_at_thickness_m: where the deposit is " + rounded(thickness->get<double>()) + " m thick\n";
   return text + "noise: standard deviation of the numerical noise; a stdev near it says nothing about the soil\n";
 }
 

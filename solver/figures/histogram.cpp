@@ -98,8 +98,8 @@ void draw_strip(Sheet& sheet, const std::vector<Bar>& bars, Axis x) {
 Sheet histogram_sheet(const StudyFiles& study) {
   const Quantity& q = study.runout();
   Sheet sheet = chart(study,
-                      std::string(q.censored > 0 ? "Mean at least " : "Mean ") + interval_text(q.mean, q.mean_ci95) +
-                          ", standard deviation " + interval_text(q.stdev, q.stdev_ci95) + ", numerical noise " +
+                      leading_mean_text(study) + "farthest particle" + mean_text(q) + ", standard deviation " +
+                          interval_text(q.stdev, {}) + ", numerical noise " +
                           (q.noise_floor_stdev ? fixed(1000 * *q.noise_floor_stdev, 2) + " mm" : "not measured") +
                           censored_text(q),
                       {900, 616});

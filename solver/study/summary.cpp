@@ -94,6 +94,9 @@ Json notes_json(const Plan& plan) {
        "goes: fronts that reach that end, and the centre of mass; from: the least of them. The mean and quantiles from "
        "there on are lower bounds (at_least), and exceedance counts such runs as beyond every x, lo only as far as "
        "they were seen"},
+      {"front_at_thickness_m",
+       "of the realizations whose deposit is somewhere front_thickness_m thick; the others have no value, and n leaves "
+       "them out"},
       {"noise_floor",
        "realization 0 and its replicates with tan(phi) scaled by 1 + 1e-6 k; a stdev near its noise_floor_stdev is "
        "numerics"}};

@@ -86,6 +86,19 @@ TEST(Charts, QuantilesAreMarkedOnceFiveRunsLieBeyond) {
   EXPECT_FALSE(contains(script, "1 in 100:"));
 }
 
+TEST(Charts, TheMeanOfTheFarthestParticleStandsBehindThatOfTheLeadingMeasure) {
+  StudyFiles study = example(20, false);  // the front of 99 % of the mass is 0.97 of the farthest particle
+  const std::string leading = "Mean: 99 % of the mass " + fixed(0.97 * 30.95, 2) + " [";
+  for (const Sheet& sheet : {histogram_sheet(study), running_mean_sheet(study)}) {
+    const std::string script = sheet.script.text();
+    const std::size_t at = script.find(leading);
+    ASSERT_NE(at, std::string::npos) << script;
+    EXPECT_NE(script.find(" m, farthest particle 30.95 [", at), std::string::npos) << script;
+  }
+  study.quantities.erase("front_mass_99_m");
+  EXPECT_TRUE(contains(histogram_sheet(study).script.text(), "Mean: farthest particle 30.95 ["));
+}
+
 // 30, 30.1, .. 31.9: the mean of the first n is 30 + (n - 1) / 20.
 TEST(Charts, RunningMeanIsThatOfTheFirstN) {
   const Rows rows = block(running_mean_sheet(example(20, false)).script.text(), "means");
