@@ -94,8 +94,8 @@ int terminal_width() {
 
 std::string study_report(const Json& study) {
   const std::string quality = study.contains("quality") ? quality_line(study.at("quality")) : "";
-  return (quality.empty() ? "" : quality + "\n") + summary_table(study) + "\nrun-out distance of " +
-         leading_measure.label + " [m] (" + leading_measure.key + ")\n" +
+  return (quality.empty() ? "" : quality + "\n") + summary_table(study) + "\nrun-out distance [m], front of " +
+         leading_measure.label + " (" + leading_measure.key + ")\n" +
          text_histogram(study.at("quantities").at(leading_measure.key), 80);
 }
 

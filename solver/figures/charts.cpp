@@ -88,14 +88,14 @@ std::string censored_text(const Quantity& q) {
          " m on and count as beyond it";
 }
 
-std::string mean_text(const Quantity& q) {
-  return (q.censored > 0 ? " at least " : " ") + interval_text(q.mean, q.mean_ci95);
-}
-
-std::string leading_mean_text(const StudyFiles& study) {
-  const auto found = study.quantities.find(leading_measure.key);
-  if (found == study.quantities.end()) return "Mean: ";
-  return std::string("Mean: ") + leading_measure.label + mean_text(found->second) + ", ";
+std::string means_text(const StudyFiles& study) {
+  const auto mean = [](const char* label, const Quantity& q, const std::optional<Interval>& interval) {
+    return label + std::string(q.censored > 0 ? " at least " : " ") + interval_text(q.mean, interval);
+  };
+  const auto leading = study.quantities.find(leading_measure.key);
+  return (leading == study.quantities.end() ? "Mean: "
+                                            : "Mean: " + mean(leading_measure.label, leading->second, {}) + ", ") +
+         mean(measure_table[0].label, study.runout(), study.runout().mean_ci95);
 }
 
 Sheet exceedance_sheet(const StudyFiles& study) {
@@ -121,9 +121,7 @@ Sheet exceedance_sheet(const StudyFiles& study) {
 }
 
 Sheet running_mean_sheet(const StudyFiles& study) {
-  const Quantity& q = study.runout();
-  Sheet sheet = chart(study, leading_mean_text(study) + "farthest particle" + mean_text(q) +
-                                 "; drawn: the latter over the first n runs. Band: 95 % interval (Student)");
+  Sheet sheet = chart(study, means_text(study) + "; drawn: the latter of n runs. Band: 95 %");
   const Rows rows = running_means(study.realizations);
   if (rows.empty()) return sheet;
   const auto [n, mean, lo, hi] = rows.back();

@@ -36,11 +36,9 @@ std::string count_text(const StudyFiles& study);
 
 /// What a subtitle says of runs whose soil left the terrain; empty without any.
 std::string censored_text(const Quantity& q);
-/// " 34.12 [33.98, 34.26] m", " at least 34.12 m" where soil left the terrain.
-std::string mean_text(const Quantity& q);
-/// What a subtitle begins with: "Mean: 99 % of the mass 30.11 [30.01, 30.21] m, ", the leading measure beside the one
-/// that is drawn.
-std::string leading_mean_text(const StudyFiles& study);
+/// What subtitles begin with: "Mean: 99 % of the mass 30.11 m, farthest particle 34.12 [33.98, 34.26] m", the leading
+/// measure beside the one that is drawn; "at least" where soil left the terrain.
+std::string means_text(const StudyFiles& study);
 /// "34.12 [33.98, 34.26] m"; "unknown", or without the interval, where the sample is too small.
 std::string interval_text(const std::optional<double>& value, const std::optional<Interval>& interval);
 

@@ -63,9 +63,8 @@ Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std
   const double terrain_bottom = curve_bottom + gap + metre * box.height();
   Sheet sheet = chart(
       study,
-      std::string() +
-          "Probability that the farthest particle reaches x, given failure (band: 95 %, Wilson); below: terrain and "
-          "slide before failure" +
+      std::string(
+          "Probability that the farthest particle reaches x, given failure (band: 95 %, Wilson). Slide before it") +
           censored_text(q),
       {std::round(edge + 28), std::round(terrain_bottom + beneath)});
   Script& script = sheet.script;
