@@ -47,7 +47,7 @@ _talus_argument_of() {
     --out | --xi | --slurm | --token-file | --tokens | --config | --talus) echo file ;;
     --executor) echo local slurm ;;
     --data | --models) echo directory ;;
-    --quantity) echo influence_zone_m front_connected_m front_mass_99_m front_mass_999_m centre_of_mass_x_m ;;
+    --quantity) echo influence_zone_m front_connected_m front_mass_99_m front_mass_999_m centre_of_mass_x_m front_at_thickness_m ;;
     --integrators) echo rk2 leapfrog ;;
     --yields) echo elastic regularized ;;
     --precisions) echo single double ;;

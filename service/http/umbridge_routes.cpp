@@ -102,7 +102,8 @@ Json evaluate(const Exchange& exchange, const Json& body, const Json& model) {
   document.erase("study");
   const Json result = jobs.evaluate(document);
   Json front = Json::array();
-  for (const Measure& measure : measure_table) front.push_back(result.at(measure.key));
+  for (const Measure& measure : measure_table)
+    if (!measure.optional) front.push_back(result.at(measure.key));
   return {{"output", Json::array({front})}};
 }
 
@@ -134,7 +135,10 @@ Json model_info(const Exchange&, const Json&, const Json&) {
 Json input_sizes(const Exchange& exchange, const Json& body, const Json& document) {
   return {{"inputSizes", sizes(body, document, exchange.service.jobs)}};
 }
-Json output_sizes(const Exchange&, const Json&, const Json&) { return {{"outputSizes", {measure_table.size()}}}; }
+/// A measure that a run may not have is no output: the protocol has numbers only.
+Json output_sizes(const Exchange&, const Json&, const Json&) {
+  return {{"outputSizes", {std::ranges::count(measure_table, false, &Measure::optional)}}};
+}
 Json unsupported(const Exchange& exchange, const Json&, const Json&) {
   throw ProtocolError{"UnsupportedFeature", exchange.request.path.substr(1) + " is not supported by this model"};
 }

@@ -158,12 +158,22 @@ void check_choices(const Case& c, Faults& faults) {
                                        std::to_string(c.field->terms));
 }
 
+void warn_of_thin_front(const Model& model, std::vector<Fault>& warnings) {
+  if (model.terrain.front_thickness >= 1.5 * model.dx) return;
+  warnings.push_back({"/terrain/front_thickness_m",
+                      to_text(model.terrain.front_thickness) + " m is less than 1.5 particle spacings, " +
+                          rounded(1.5 * model.dx) +
+                          " m: a single row of particles, which the method does not resolve, may decide where that "
+                          "front is"});
+}
+
 std::vector<Fault> find_warnings(const Case& c) {
   std::vector<Fault> warnings;
   const Model& model = c.model;
   warn_of_unlikely_values(model, warnings);
   if (!model.terrain.closed) warn_of_overhangs(model.terrain, warnings);
   if (!model.terrain.closed) warn_of_open_ends(model, warnings);
+  warn_of_thin_front(model, warnings);
   if (c.field) warn_of_unused_keys(*c.field, warnings);
   if (model.numerics.precision == Precision::full)
     warnings.push_back(

@@ -9,6 +9,7 @@
 
 #include "study/quality_summary.hpp"
 #include "support/measures.hpp"
+#include "support/text.hpp"
 
 namespace talus::cli {
 namespace {
@@ -65,7 +66,7 @@ std::optional<double> time_left(const Progress& p) {
 std::string progress_line(const Progress& p) {
   std::string text =
       std::to_string(p.done) + "/" + std::to_string(p.planned) + " done, " + std::to_string(p.failed) + " failed";
-  if (p.mean) text += format(", mean run-out %.2f", *p.mean);
+  if (p.mean) text += format(", mean farthest particle %.2f", *p.mean);
   if (p.mean_half_width) text += format(" +/- %.2f", *p.mean_half_width);
   if (p.mean) text += " m";
   if (const auto left = time_left(p)) text += ", " + duration(*left) + " left";
@@ -93,9 +94,9 @@ int terminal_width() {
 
 std::string study_report(const Json& study) {
   const std::string quality = study.contains("quality") ? quality_line(study.at("quality")) : "";
-  return (quality.empty() ? "" : quality + "\n") + summary_table(study) +
-         "\nrun-out distance [m] (influence_zone_m)\n" +
-         text_histogram(study.at("quantities").at(measure_table[0].key), 80);
+  return (quality.empty() ? "" : quality + "\n") + summary_table(study) + "\nrun-out distance [m], front of " +
+         leading_measure.label + " (" + leading_measure.key + ")\n" +
+         text_histogram(study.at("quantities").at(leading_measure.key), 80);
 }
 
 std::string summary_table(const Json& study) {
@@ -113,14 +114,16 @@ std::string summary_table(const Json& study) {
   text += format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", "", "mean", "95 % interval", "stdev", "95 % interval",
                  "noise", "median", "q95");
   const auto at_least = [](bool lower_bound) { return std::string(lower_bound ? ">=" : ""); };
-  for (const auto& [key, q] : study.at("quantities").items()) {
+  for (const Measure* measure : reading_order()) {
+    if (!study.at("quantities").contains(measure->key)) continue;  // of an earlier version
+    const Json& q = study.at("quantities").at(measure->key);
     const Json* median = quantile(q, 0.5);
     const Json* high = quantile(q, 0.95);
     const auto of = [&](const Json* at) {
       return at == nullptr ? std::string("-") : at_least(at->value("at_least", false)) + number(at->at("value"));
     };
     text +=
-        format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", key.c_str(),
+        format("%-20s %9s  %-19s %8s  %-17s %8s  %8s %8s\n", measure->key,
                (at_least(q.value("mean_at_least", false)) + number(q.at("mean"))).c_str(),
                interval(q.at("mean_ci95")).c_str(), number(q.at("stdev")).c_str(), interval(q.at("stdev_ci95")).c_str(),
                number(q.at("noise_floor_stdev")).c_str(), of(median).c_str(), of(high).c_str());
@@ -130,6 +133,9 @@ std::string summary_table(const Json& study) {
     text +=
         format("soil left the terrain in %lld realizations, from %.2f m on: they may have gone any distance beyond\n",
                censored->at("runs").get<long long>(), censored->at("from").get<double>());
+  text += "influence_zone_m: the farthest particle, the paper's influence zone\n";
+  if (const auto thickness = study.find("front_thickness_m"); thickness != study.end() && thickness->is_number())
+    text += "front_at_thickness_m: where the deposit is " + rounded(thickness->get<double>()) + " m thick\n";
   return text + "noise: standard deviation of the numerical noise; a stdev near it says nothing about the soil\n";
 }
 

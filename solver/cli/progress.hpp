@@ -12,7 +12,7 @@ namespace talus::cli {
 /// Time to go at the present rate [s]; unset before the first run has ended.
 std::optional<double> time_left(const Progress& progress);
 
-/// "12/100 done, 1 failed, mean run-out 34.12 +/- 0.31 m, 22 min left, 4 running, 240/h"
+/// "12/100 done, 1 failed, mean farthest particle 34.12 +/- 0.31 m, 22 min left, 4 running, 240/h"
 std::string progress_line(const Progress& progress);
 
 /// The same behind a bar, cut to `width` columns.
@@ -21,8 +21,8 @@ std::string progress_bar(const Progress& progress, int width);
 /// Columns of the terminal that stderr is; 80 where it is none.
 int terminal_width();
 
-/// What ends `talus study`, from the content of study.json: a table of all measures, and the histogram of the run-out
-/// distance, 80 columns wide.
+/// What ends `talus study`, from the content of study.json: a table of all measures, and the histogram of the leading
+/// one, 80 columns wide.
 std::string study_report(const Json& study);
 
 /// The table alone.

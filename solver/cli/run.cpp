@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
@@ -47,8 +48,8 @@ class ProgressLine {
     if (!on_ || elapsed < next_) return;
     next_ = elapsed + 0.2;
     const double share = simulation.time() / end;
-    std::fprintf(stderr, "\r\033[K%5.1f %%  t = %.2f of %g s  front %.2f m  %.0f s left at most", 100.0 * share,
-                 simulation.time(), end, simulation.history_row().front,
+    std::fprintf(stderr, "\r\033[K%5.1f %%  t = %.2f of %g s  farthest particle %.2f m  %.0f s left at most",
+                 100.0 * share, simulation.time(), end, simulation.history_row().front,
                  share > 0.0 ? elapsed * (1.0 - share) / share : 0.0);
     std::fflush(stderr);
     shown_ = true;
@@ -59,16 +60,31 @@ class ProgressLine {
   double next_ = 0.5;
 };
 
+/// "30.254"; ">=30.254" of a lower bound, "-" of none.
+std::string value_text(const RunResult& r, const Measure& measure) {
+  const double value = r.measures.*measure.member;
+  if (std::isnan(value)) return "-";
+  const bool lower_bound = std::ranges::find(r.lower_bounds, measure.key) != r.lower_bounds.end();
+  char text[32];
+  std::snprintf(text, sizeof text, "%s%.3f", lower_bound ? ">=" : "", value);
+  return text;
+}
+
+/// What is printed behind the value of a measure.
+std::string remark_on(const RunResult& r, const Measure& measure) {
+  if (&measure == &leading_measure) return std::string("   the run-out distance (") + measure.key + ")";
+  if (&measure == measure_table.data()) return std::string("   the paper's influence zone (") + measure.key + ")";
+  if (measure.member != &Measures::front_at_thickness || r.front_thickness <= 0.0) return "";
+  return "   where the soil is " + rounded(r.front_thickness) + " m thick";
+}
+
 void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t seed) {
   std::fputs(verdict_lines(r.quality).c_str(), stdout);
   std::printf("distances from x = %.10g m to the %s\n", axis.from, axis.to == SlidesTo::right ? "right" : "left");
-  for (const Measure& measure : measure_table) {
-    const bool lower_bound = std::ranges::find(r.lower_bounds, measure.key) != r.lower_bounds.end();
-    char value[32];
-    std::snprintf(value, sizeof value, "%s%.3f", lower_bound ? ">=" : "", r.measures.*measure.member);
-    std::printf("%-26s%10s %s%s\n", ((measure.front ? "front, " : "") + std::string(measure.label)).c_str(), value,
-                measure.unit, &measure == measure_table.data() ? "   the run-out distance (influence_zone_m)" : "");
-  }
+  for (const Measure* measure : reading_order())
+    std::printf("%-26s%10s %s%s\n", ((measure->front ? "front, " : "") + std::string(measure->label)).c_str(),
+                value_text(r, *measure).c_str(), measure->unit, remark_on(r, *measure).c_str());
+  for (const std::string& note : r.notes) std::printf("note: %s\n", note.c_str());
   std::printf("time reached              %10.3f s   in %lld steps%s\n", r.time, static_cast<long long>(r.steps),
               r.at_rest ? ", at rest" : "");
   std::printf("particles                 %10lld soil + %lld wall, %lld penetrated\n", static_cast<long long>(r.soil),

@@ -56,7 +56,7 @@ Axis means_axis(const Rows& rows) {
     shown.push_back(mean);
     if (n >= std::min(8.0, rows.back()[0]) && lo == lo) shown.insert(shown.end(), {lo, hi});
   }
-  return axis_over(shown, 0.1, "mean run-out distance (m)");
+  return axis_over(shown, 0.1, "mean run-out distance of the farthest particle (m)");
 }
 
 }  // namespace
@@ -88,19 +88,30 @@ std::string censored_text(const Quantity& q) {
          " m on and count as beyond it";
 }
 
+std::string means_text(const StudyFiles& study) {
+  const auto mean = [](const char* label, const Quantity& q, const std::optional<Interval>& interval) {
+    return label + std::string(q.censored > 0 ? " at least " : " ") + interval_text(q.mean, interval);
+  };
+  const auto leading = study.quantities.find(leading_measure.key);
+  return (leading == study.quantities.end() ? "Mean: "
+                                            : "Mean: " + mean(leading_measure.label, leading->second, {}) + ", ") +
+         mean(measure_table[0].label, study.runout(), study.runout().mean_ci95);
+}
+
 Sheet exceedance_sheet(const StudyFiles& study) {
-  Sheet sheet =
-      chart(study, std::string("Probability that the run-out exceeds x, given failure. Band: 95 % (Wilson)") +
-                       (study.failed > 0 ? ", widened to allow for failed runs (none to all of them exceed x)" : "") +
-                       censored_text(study.runout()));
+  Sheet sheet = chart(
+      study, std::string("Probability that the farthest particle goes beyond x, given failure. Band: 95 % (Wilson)") +
+                 (study.failed > 0 ? ", widened to allow for failed runs (none to all of them exceed x)" : "") +
+                 censored_text(study.runout()));
   Rows rows;
   for (const Exceedance& e : study.runout().exceedance) rows.push_back({e.x, e.p, e.lo, e.hi});
   sheet.script.data("curve", rows);
   const double lo = rows.empty() ? 0.0 : rows.front()[0];
   const double hi = rows.empty() ? 1.0 : rows.back()[0];
   const double room = hi > lo ? 0.06 * (hi - lo) : 1.0;
-  sheet.axes({lo - room, hi + 3 * room, nice_step(hi - lo + 4 * room, 8), "run-out distance x (m)"},
-             {0, 1.02, 0.1, "probability of exceedance"});
+  sheet.axes(
+      {lo - room, hi + 3 * room, nice_step(hi - lo + 4 * room, 8), "run-out distance x of the farthest particle (m)"},
+      {0, 1.02, 0.1, "probability of exceedance"});
   mark_quantile(sheet.script, study, 0.5, "half of the runs");
   mark_quantile(sheet.script, study, 0.9, "1 in 10");
   mark_quantile(sheet.script, study, 0.99, "1 in 100");
@@ -110,10 +121,7 @@ Sheet exceedance_sheet(const StudyFiles& study) {
 }
 
 Sheet running_mean_sheet(const StudyFiles& study) {
-  const Quantity& q = study.runout();
-  Sheet sheet =
-      chart(study, std::string("Mean run-out distance of the first n runs") + (q.censored > 0 ? ", at least: " : ": ") +
-                       interval_text(q.mean, q.mean_ci95) + ". Band: 95 % interval (Student)");
+  Sheet sheet = chart(study, means_text(study) + "; drawn: the latter of n runs. Band: 95 %");
   const Rows rows = running_means(study.realizations);
   if (rows.empty()) return sheet;
   const auto [n, mean, lo, hi] = rows.back();
@@ -135,7 +143,7 @@ Sheet friction_angle_sheet(const StudyFiles& study) {
   const std::optional<double> r = correlation(phi, runout);
   Sheet sheet = chart(study, r ? "Correlation " + fixed(*r, 2) + "; dashed: least squares" : "One point per run");
   const Axis x = axis_over(phi, 0.5, "mean friction angle of the slide (°)");
-  sheet.axes(x, axis_over(runout, 0.5, "run-out distance (m)"));
+  sheet.axes(x, axis_over(runout, 0.5, "run-out distance of the farthest particle (m)"));
   sheet.place(chart_panel);
   sheet.script.data("runs", points);
   std::vector<std::string> elements{"$runs using 1:2 with points pointtype 7 pointsize 0.5 linecolor rgb '#660072B2'"};

@@ -9,20 +9,20 @@
 
 namespace talus::figures {
 
-/// Histogram of the run-out distance; beneath it, on the same scale, the interval of the mean, the standard deviation
-/// and the numerical noise.
+/// Histogram of the farthest particle's run-out distance, the paper's influence zone; beneath it, on the same scale,
+/// the interval of the mean, the standard deviation and the numerical noise.
 Sheet histogram_sheet(const StudyFiles& study);
 
-/// Probability that a run reaches farther than x, with Wilson's 95 % band.
+/// Probability that the farthest particle of a run goes beyond x, with Wilson's 95 % band.
 Sheet exceedance_sheet(const StudyFiles& study);
 
-/// Mean of the first n realizations done and its 95 % interval against n.
+/// Mean run-out distance of the farthest particle over the first n realizations done and its 95 % interval against n.
 Sheet running_mean_sheet(const StudyFiles& study);
 
-/// Probability that the front reaches x, above the terrain with the slide before its release.
+/// Probability that the farthest particle reaches x, above the terrain with the slide before its release.
 Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std::span<const SlidePart> slide);
 
-/// Run-out distance against the spatial mean of the friction angle, one point a realization.
+/// Run-out distance of the farthest particle against the spatial mean of the friction angle, one point a realization.
 Sheet friction_angle_sheet(const StudyFiles& study);
 
 /// Standard deviation of every measure beside its numerical noise.
@@ -34,9 +34,12 @@ Sheet chart(const StudyFiles& study, std::string_view subtitle, const Canvas& ca
 /// "200 realizations" or "198 of 200 realizations done, 2 failed".
 std::string count_text(const StudyFiles& study);
 
-/// "34.12 [33.98, 34.26] m"; "unknown", or without the interval, where the sample is too small.
 /// What a subtitle says of runs whose soil left the terrain; empty without any.
 std::string censored_text(const Quantity& q);
+/// What subtitles begin with: "Mean: 99 % of the mass 30.11 m, farthest particle 34.12 [33.98, 34.26] m", the leading
+/// measure beside the one that is drawn; "at least" where soil left the terrain.
+std::string means_text(const StudyFiles& study);
+/// "34.12 [33.98, 34.26] m"; "unknown", or without the interval, where the sample is too small.
 std::string interval_text(const std::optional<double>& value, const std::optional<Interval>& interval);
 
 }  // namespace talus::figures

@@ -97,12 +97,11 @@ void draw_strip(Sheet& sheet, const std::vector<Bar>& bars, Axis x) {
 
 Sheet histogram_sheet(const StudyFiles& study) {
   const Quantity& q = study.runout();
-  Sheet sheet = chart(study,
-                      std::string(q.censored > 0 ? "Mean at least " : "Mean ") + interval_text(q.mean, q.mean_ci95) +
-                          ", standard deviation " + interval_text(q.stdev, q.stdev_ci95) + ", numerical noise " +
-                          (q.noise_floor_stdev ? fixed(1000 * *q.noise_floor_stdev, 2) + " mm" : "not measured") +
-                          censored_text(q),
-                      {900, 616});
+  // The strip shows the standard deviation and the noise too, should there be no room to state them.
+  const std::string spread =
+      ", standard deviation " + interval_text(q.stdev, {}) + ", noise " +
+      (q.noise_floor_stdev ? fixed(1000 * *q.noise_floor_stdev, 2) + " mm" : std::string("not measured"));
+  Sheet sheet = chart(study, means_text(study) + (q.censored > 0 ? censored_text(q) : spread), {900, 616});
   const std::vector<Bar> bars = strip_bars(q);
   const Axis x = x_axis(q, bars);
   draw_histogram(sheet, q, x);

@@ -61,13 +61,12 @@ Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std
   const double metre = std::min((right - left) / box.width(), tallest / box.height());
   const double edge = left + metre * box.width();
   const double terrain_bottom = curve_bottom + gap + metre * box.height();
-  Sheet sheet =
-      chart(study,
-            std::string() +
-                "Probability that the front reaches x, given failure (band: 95 %, Wilson); below: terrain and "
-                "slide before failure" +
-                censored_text(q),
-            {std::round(edge + 28), std::round(terrain_bottom + beneath)});
+  Sheet sheet = chart(
+      study,
+      std::string(
+          "Probability that the farthest particle reaches x, given failure (band: 95 %, Wilson). Slide before it") +
+          censored_text(q),
+      {std::round(edge + 28), std::round(terrain_bottom + beneath)});
   Script& script = sheet.script;
   Axis x{box.lo.x, box.hi.x, nice_step(box.width(), edge - left, 90), ""};
 

@@ -60,6 +60,15 @@ class ObjectIo {
     else
       value = std::numeric_limits<double>::quiet_NaN();
   }
+  /// NaN is null, or a key that an earlier version did not write.
+  void number_or_null(const char* key, double& value) {
+    if (reading_ ? has(key) && !member(key).is_null() : !std::isnan(value))
+      number(key, value);
+    else if (reading_)
+      value = std::numeric_limits<double>::quiet_NaN();
+    else
+      member(key) = nullptr;
+  }
   /// Whether a key is to be transferred that earlier versions did not write.
   bool has(const char* key) const { return !reading_ || node_.contains(key); }
   /// For a key that earlier versions did not write; empty without it.
@@ -186,13 +195,23 @@ void transfer_energy(ObjectIo energy, EnergyBudget& budget) {
   energy.optional("created_share", share);
 }
 
+void transfer_measures(ObjectIo& root, RunResult& result) {
+  for (const Measure* measure : reading_order()) {
+    double& value = result.measures.*measure->member;
+    if (measure == measure_table.data())
+      root.number(measure->key, value);
+    else if (measure->optional)
+      root.number_or_null(measure->key, value);
+    else
+      root.number_or_nan(measure->key, value);
+  }
+  if (root.has("front_thickness_m")) root.number("front_thickness_m", result.front_thickness, 0.0);
+  root.texts_or_none("notes", result.notes);
+}
+
 /// Every member of the document, in its order.
 void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
-  for (const Measure& measure : measure_table)
-    if (&measure == measure_table.data())
-      root.number(measure.key, result.measures.*measure.member);
-    else
-      root.number_or_nan(measure.key, result.measures.*measure.member);
+  transfer_measures(root, result);
   ObjectIo particles = root.object("particles");
   particles.integer("soil", result.soil);
   particles.integer("wall", result.wall);

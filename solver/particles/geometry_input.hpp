@@ -30,9 +30,15 @@ struct Terrain {
   bool right_wall = false;  ///< a vertical wall stands on the last bed vertex
   double wall_top = 0.0;    ///< y of the top of the end walls [m]
   RunOutAxis run_out;
+  double front_thickness = 0.1;  ///< of the soil at the front at fixed thickness [m], > 0
   Vec2 origin = {};  ///< what was taken off the coordinates of the case; what is published has it added again [m]
   bool operator==(const Terrain&) const = default;
 };
+
+/// What the front at fixed thickness takes where the case gives none: 0.1 m, or half-way between one row of particles
+/// and two, so that a single row, which the method does not resolve, never makes a front. [m]
+/// @param dx  particle spacing [m]
+constexpr double default_front_thickness(double dx) { return dx > 0.1 / 1.5 ? 1.5 * dx : 0.1; }
 
 /// A polyline with soil on its left side as it is walked, rock on its right.
 struct Polyline {

@@ -2,15 +2,21 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
-#include <cstdio>
+#include <limits>
 #include <numeric>
 
 #include "neighbours/cell_list.hpp"
+#include "simulation/thickness.hpp"
 #include "support/digest.hpp"
+#include "support/text.hpp"
 
 namespace talus {
 namespace {
+
+/// By how many spacings the farthest particle may lie ahead of the other fronts before it counts as thrown [-].
+constexpr double thrown_ahead = 5.0;
 
 /// Indices of the soil in order of id, so that sums and digests do not depend on how the particles are stored.
 std::vector<std::uint32_t> by_id(const Soil& soil) {
@@ -44,8 +50,8 @@ std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
   return i;
 }
 
-/// Farthest run-out of the heaviest body whose particles are linked by gaps of at most `gap`.
-double connected_front(const Soil& soil, const RunOutAxis& axis, double gap) {
+/// The heaviest body whose particles are linked by gaps of at most `gap`: its particles in order of id.
+std::vector<std::uint32_t> largest_body(const Soil& soil, double gap) {
   CellList cells;
   cells.build(soil.x, soil.y, gap);
   const auto order = cells.order();
@@ -60,13 +66,31 @@ double connected_front(const Soil& soil, const RunOutAxis& axis, double gap) {
         parent[std::max(a, b)] = std::min(a, b);
       }
     });
-  std::vector<double> mass(soil.size(), 0.0), front(soil.size(), -1e300);
-  for (const std::uint32_t i : by_id(soil)) {
-    const std::uint32_t root = find_root(parent, i);
-    mass[root] += soil.m[i];
-    front[root] = std::max(front[root], axis.distance(soil.x[i]));
-  }
-  return front[static_cast<std::size_t>(std::max_element(mass.begin(), mass.end()) - mass.begin())];
+  std::vector<double> mass(soil.size(), 0.0);
+  std::vector<std::uint32_t> body = by_id(soil);
+  for (const std::uint32_t i : body) mass[find_root(parent, i)] += soil.m[i];
+  const auto root = static_cast<std::uint32_t>(std::ranges::max_element(mass) - mass.begin());
+  std::erase_if(body, [&](std::uint32_t i) { return find_root(parent, i) != root; });
+  return body;
+}
+
+/// Farthest run-out of some particles.
+double farthest_of(std::span<const std::uint32_t> particles, const Soil& soil, const RunOutAxis& axis) {
+  double most = axis.distance(soil.x[particles.front()]);
+  for (const std::uint32_t i : particles) most = std::max(most, axis.distance(soil.x[i]));
+  return most;
+}
+
+/// Of some particles, those that are still on the terrain, in order of run-out.
+std::vector<SoilParcel> parcels_of(std::span<const std::uint32_t> particles, const Soil& soil, const RunOutAxis& axis,
+                                   std::span<const Material> materials) {
+  std::vector<SoilParcel> parcels;
+  for (const std::uint32_t i : particles)
+    if (i < soil.n_active)
+      parcels.push_back({.run_out = axis.distance(soil.x[i]),
+                         .area = soil.m[i] / materials[static_cast<std::size_t>(soil.material[i])].rho0});
+  std::ranges::stable_sort(parcels, {}, &SoilParcel::run_out);
+  return parcels;
 }
 
 }  // namespace
@@ -115,9 +139,18 @@ double max_speed(const Soil& soil) {
   return std::sqrt(v2);
 }
 
-Measures measure_fronts(const Soil& soil, const RunOutAxis& axis, double dx) {
-  return {farthest(soil, axis), connected_front(soil, axis, 1.5 * dx), mass_front(soil, axis, 0.01),
-          mass_front(soil, axis, 0.001), axis.distance(centre_of_mass(soil).x)};
+Measures measure_fronts(const Soil& soil, const Terrain& terrain, double dx, std::span<const Material> materials) {
+  const RunOutAxis& axis = terrain.run_out;
+  const std::vector<std::uint32_t> body = largest_body(soil, 1.5 * dx);
+  const std::vector<SoilParcel> deposit = parcels_of(body, soil, axis, materials);
+  return {
+      .influence_zone = farthest(soil, axis),
+      .front_connected = farthest_of(body, soil, axis),
+      .front_mass_99 = mass_front(soil, axis, 0.01),
+      .front_mass_999 = mass_front(soil, axis, 0.001),
+      .centre_of_mass_x = axis.distance(centre_of_mass(soil).x),
+      .front_at_thickness =
+          front_at_thickness(deposit, dx, terrain.front_thickness).value_or(std::numeric_limits<double>::quiet_NaN())};
 }
 
 std::vector<std::string> lower_bounds(const Soil& soil, const Terrain& terrain, const Measures& measures) {
@@ -126,9 +159,27 @@ std::vector<std::string> lower_bounds(const Soil& soil, const Terrain& terrain, 
   bool left = false;
   for (std::size_t i = soil.n_active; i < soil.size(); ++i) left = left || axis.distance(soil.x[i]) >= end;
   std::vector<std::string> keys;
-  for (const Measure& measure : measure_table)
-    if (left && (!measure.front || measures.*measure.member >= end)) keys.emplace_back(measure.key);
+  for (const Measure& measure : measure_table) {
+    const double value = measures.*measure.member;
+    // Of a body that goes on beyond the end nobody knows where it is thick.
+    const double reach = measure.member == &Measures::front_at_thickness ? measures.front_connected : value;
+    if (left && !std::isnan(value) && (!measure.front || reach >= end)) keys.emplace_back(measure.key);
+  }
   return keys;
+}
+
+std::vector<std::string> notes_on(const Measures& measures, double front_thickness, double dx) {
+  std::vector<std::string> notes;
+  if (std::isnan(measures.front_at_thickness))
+    notes.push_back("the deposit is nowhere " + rounded(front_thickness) +
+                    " m thick (terrain.front_thickness_m), so front_at_thickness_m has no value");
+  const double ahead_of_body = measures.influence_zone - measures.front_connected;
+  const double ahead_of_mass = measures.influence_zone - measures.front_mass_99;
+  if (std::min(ahead_of_body, ahead_of_mass) > thrown_ahead * dx)
+    notes.push_back("the farthest particle lies " + rounded(ahead_of_mass) +
+                    " m ahead of the front of 99 % of the mass and " + rounded(ahead_of_body) +
+                    " m ahead of the connected body: it was thrown, and is no front of the deposit");
+  return notes;
 }
 
 std::string digest(const Soil& soil) {

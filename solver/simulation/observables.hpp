@@ -4,18 +4,29 @@
 #include <span>
 #include <string>
 
+#include "material/material.hpp"
 #include "particles/geometry_input.hpp"
 #include "particles/particles.hpp"
 #include "simulation/run_result.hpp"
 
 namespace talus {
 
-/// Fronts and centre of mass as run-outs; dx is the particle spacing [m]. Soil must not be empty.
-Measures measure_fronts(const Soil& soil, const RunOutAxis& axis, double dx);
+/// Fronts and centre of mass as run-outs. The front at fixed thickness is that of the largest body, without soil that
+/// left the terrain: the farthest place where it is terrain.front_thickness thick (simulation/thickness.hpp).
+/// @param soil       not empty
+/// @param dx         particle spacing [m]
+/// @param materials  of the soil, by index
+Measures measure_fronts(const Soil& soil, const Terrain& terrain, double dx, std::span<const Material> materials);
 
 /// Keys of the measures that are lower bounds, since soil left through the open end towards which the slide goes:
-/// fronts that reach that end, and the centre of mass.
+/// fronts that reach that end, the front at fixed thickness of a connected body that does, and the centre of mass.
 std::vector<std::string> lower_bounds(const Soil& soil, const Terrain& terrain, const Measures& measures);
+
+/// What a reader of the measures must know: why one has no value, and that particles were thrown far ahead of the
+/// deposit.
+/// @param front_thickness  [m]
+/// @param dx               particle spacing [m]
+std::vector<std::string> notes_on(const Measures& measures, double front_thickness, double dx);
 
 /// Run-out of the farthest soil particle [m].
 double farthest(const Soil& soil, const RunOutAxis& axis = {});

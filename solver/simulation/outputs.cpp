@@ -144,7 +144,9 @@ RunFacts Simulation::facts() const {
 
 RunResult Simulation::result() const {
   RunResult r;
-  r.measures = measure_fronts(soil_, model_.terrain.run_out, model_.dx);
+  r.measures = measure_fronts(soil_, model_.terrain, model_.dx, model_.materials);
+  r.front_thickness = model_.terrain.front_thickness;
+  r.notes = notes_on(r.measures, r.front_thickness, model_.dx);
   r.lower_bounds = lower_bounds(soil_, model_.terrain, r.measures);
   r.ending = time_ >= model_.time.end ? Ending::end_time : rests() ? Ending::at_rest : Ending::interrupted;
   r.soil = static_cast<std::int64_t>(soil_.size());

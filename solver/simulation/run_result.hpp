@@ -32,6 +32,8 @@ enum class Ending { end_time, at_rest, interrupted };
 /// The outcome of a run.
 struct RunResult {
   Measures measures;
+  double front_thickness = 0.0;                ///< of the soil at measures.front_at_thickness [m]; 0: not recorded
+  std::vector<std::string> notes = {};         ///< notes_on() the measures
   std::vector<std::string> lower_bounds = {};  ///< keys of the measures of which soil that left makes lower bounds
   Ending ending = Ending::end_time;
   std::int64_t soil = 0;  ///< particles

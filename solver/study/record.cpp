@@ -45,7 +45,13 @@ bool Record::is_lower_bound(const Measure& measure) const {
 }
 
 bool is_later(std::string_view key) {
-  return std::ranges::any_of(covariate_table, [&](const Covariate& of) { return of.later && of.key == key; });
+  const auto later = [&](const auto& of) { return of.later && of.key == key; };
+  return std::ranges::any_of(covariate_table, later) || std::ranges::any_of(measure_table, later);
+}
+
+bool is_optional(std::string_view key) {
+  const Measure* measure = find_measure(key);
+  return measure && measure->optional;
 }
 
 bool may_be_missing(std::string_view key) {
@@ -69,7 +75,7 @@ std::optional<Record> read_result(const fs::path& file, const RunKey& key, const
     Record record{.index = key.index, .done = true};
     visit_numbers(record, [&](const char* name, const char* object, auto& value) {
       const Json& place = object ? json.at(object) : json;
-      if (may_be_missing(name) && !place.contains(name))
+      if (may_be_missing(name) && (!place.contains(name) || (is_optional(name) && place.at(name).is_null())))
         value = std::numeric_limits<std::remove_reference_t<decltype(value)>>::quiet_NaN();
       else
         place.at(name).get_to(value);

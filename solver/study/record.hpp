@@ -22,9 +22,10 @@ namespace talus {
 struct Record {
   std::int64_t index = 0;          ///< realization, or replicate
   bool done = false;               ///< false: failed
-  Measures measures = {};          ///< [m]
+  Measures measures = {};          ///< [m]; NaN: no value, or not recorded
   double mean_phi_deg = 0.0;       ///< mean friction angle over the soil particles [deg]
   double captured_variance = 0.0;  ///< [-]
+  double front_thickness = 0.0;    ///< of the soil at measures.front_at_thickness [m]; NaN: not recorded
   std::int64_t steps = 0;
   double wall_clock = 0.0;        ///< [s]
   double left_domain = 0.0;       ///< soil particles that left through an open end; NaN: not recorded
@@ -57,10 +58,13 @@ inline constexpr std::array covariate_table{Covariate{"mean_friction_angle_deg",
                                             Covariate{"captured_variance", "field", &Record::captured_variance},
                                             Covariate{"steps", nullptr, &Record::steps},
                                             Covariate{"wall_clock_s", nullptr, &Record::wall_clock},
-                                            Covariate{"left_domain", nullptr, &Record::left_domain, true}};
+                                            Covariate{"left_domain", nullptr, &Record::left_domain, true},
+                                            Covariate{"front_thickness_m", nullptr, &Record::front_thickness, true}};
 
 /// Whether version 0.1.0 did not have the number of this key.
 bool is_later(std::string_view key);
+/// Whether a run may have no value of the measure of this key.
+bool is_optional(std::string_view key);
 /// Whether a result or table of an earlier version may be without this number: every measure but the first, and the
 /// covariates that came later. It is NaN then.
 bool may_be_missing(std::string_view key);

@@ -94,6 +94,9 @@ Json notes_json(const Plan& plan) {
        "goes: fronts that reach that end, and the centre of mass; from: the least of them. The mean and quantiles from "
        "there on are lower bounds (at_least), and exceedance counts such runs as beyond every x, lo only as far as "
        "they were seen"},
+      {"front_at_thickness_m",
+       "of the realizations whose deposit is somewhere front_thickness_m thick; the others have no value, and n leaves "
+       "them out"},
       {"noise_floor",
        "realization 0 and its replicates with tan(phi) scaled by 1 + 1e-6 k; a stdev near its noise_floor_stdev is "
        "numerics"}};
@@ -165,6 +168,7 @@ bool StudySummary::add(const Record& record) {
   phi_.push_back(record.mean_phi_deg);
   wall_clock_ += record.wall_clock;
   steps_ += record.steps;
+  if (!front_thickness_ && !std::isnan(record.front_thickness)) front_thickness_ = record.front_thickness;
   if (!captured_variance_) captured_variance_ = record.captured_variance;
   if (!shortest_ || zone < shortest_->second) shortest_ = {record.index, zone};
   if (!farthest_ || zone > farthest_->second) farthest_ = {record.index, zone};
@@ -230,10 +234,12 @@ Json StudySummary::json() const {
                 {"realizations", realizations_json()},
                 {"quality", quality_json()}};
   if (is_hypercube(plan_)) study["provenance"]["stratified_modes"] = plan_.study.stratified_modes;
-  for (const Measure& measure : measure_table) {
-    const MeasureSample of = sample(measure);
-    study["quantities"][measure.key] = quantity_json(of, sorted(of.values), given_edges(plan_, measure));
+  study["leading_quantity"] = leading_measure.key;
+  for (const Measure* measure : reading_order()) {
+    const MeasureSample of = sample(*measure);
+    study["quantities"][measure->key] = quantity_json(of, sorted(of.values), given_edges(plan_, *measure));
   }
+  study["front_thickness_m"] = json_of(front_thickness_);
   study["captured_variance"] = json_of(captured_variance_);
   study["mean_friction_angle_deg"] = mean_phi_json();
   study["noise_floor"] = replicates_json();

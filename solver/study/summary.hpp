@@ -67,7 +67,7 @@ class StudySummary {
   std::int64_t next_ = 0;         ///< one more than the last index
   double wall_clock_ = 0.0;       ///< [s]
   std::int64_t steps_ = 0;
-  std::optional<double> captured_variance_;
+  std::optional<double> captured_variance_, front_thickness_;           ///< of the first realization that has them
   std::optional<std::pair<std::int64_t, double>> shortest_, farthest_;  ///< index and influence zone [m]
   std::optional<Record> origin_;  ///< realization 0: itself a replicate, the one with k = 0
   std::vector<Record> replicates_;

@@ -32,9 +32,10 @@ struct StoreTest : testing::Test {
   Job job(const std::string& id) { return *store->job(id); }
   static Record result(double zone) {
     return {.done = true,
-            .measures = {zone, 1, 2, 3, 4},
+            .measures = {zone, 1, 2, 3, 4, 5},
             .mean_phi_deg = 25,
             .captured_variance = 0.9,
+            .front_thickness = 0.6,
             .steps = 9,
             .wall_clock = 0.5,
             .digest = "d",

@@ -68,7 +68,8 @@ TEST_F(StoreTest, ADatabaseFromBeforeAMeasureGetsItsColumn) {
   EXPECT_TRUE(std::isnan(run->result->measures.front_mass_999));
   EXPECT_TRUE(store->measure_sample(job("one"), *find_measure("front_mass_999_m"), {}).values.empty());
   EXPECT_EQ(store->measure_sample(job("one"), *find_measure("influence_zone_m"), {}).values, std::vector<double>{7.5});
-  EXPECT_EQ(table_of(*store, claim.study), std::vector<std::string>{"0,done,7.5,1,2,,4,25,0.9,9,0.5,d,,sound,,,0\n"});
+  EXPECT_EQ(table_of(*store, claim.study),
+            std::vector<std::string>{"0,done,7.5,1,2,,4,25,0.9,9,0.5,d,,sound,,,5,0,0.6\n"});
 }
 
 /// The tables of version 2, before runs had a level, with one job: realization 0 and replicate 1 are done, realization
@@ -129,8 +130,8 @@ TEST_F(StoreTest, ADatabaseFromBeforeLevelsIsMigrated) {
   EXPECT_EQ(store->stored_response("a", "k")->location, "/old");
   EXPECT_EQ(store->measure_sample(old, measure_table[0], {}).values, std::vector<double>{7.5});
   EXPECT_EQ(store->measure_sample(old, measure_table[0], {}).noise, (std::vector<double>{7.5, 7.25}));
-  EXPECT_EQ(table_of(*store, old.number), (std::vector<std::string>{"0,done,7.5,1,2,3,4,25,0.9,9,0.5,d,,,,,\n",
-                                                                    "1,failed,,,,,,,,,,,\"diverged\",,,,\n"}));
+  EXPECT_EQ(table_of(*store, old.number), (std::vector<std::string>{"0,done,7.5,1,2,3,4,25,0.9,9,0.5,d,,,,,,,\n",
+                                                                    "1,failed,,,,,,,,,,,\"diverged\",,,,,,\n"}));
   EXPECT_EQ(old.quality, (QualityCounts{.not_assessed = 1}));
   const service::Run failed = *store->run(old.number, realization(1));
   EXPECT_EQ(failed.key.level, 0);

@@ -198,5 +198,16 @@ TEST(Warnings, AResolvedCaseNamesAllKeysWithoutOne) {
   EXPECT_TRUE(test::load(loaded.resolved).warnings.empty());
 }
 
+TEST(Warnings, AFrontThatASingleRowOfParticlesMayDecide) {
+  const auto warnings = [](double thickness) {
+    return test::load(with("/terrain/front_thickness_m", thickness)).warnings;
+  };
+  EXPECT_TRUE(warnings(1.5 * 0.5).empty());
+  ASSERT_EQ(warnings(0.7).size(), 1u);
+  EXPECT_EQ(warnings(0.7)[0].pointer, "/terrain/front_thickness_m");
+  EXPECT_NE(warnings(0.7)[0].message.find("0.7 m is less than 1.5 particle spacings, 0.75 m"), std::string::npos);
+  EXPECT_EQ(faults_of(with("/terrain/front_thickness_m", 0)).size(), 1u);
+}
+
 }  // namespace
 }  // namespace talus

@@ -144,6 +144,7 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
       with("/material",
            Json::parse(R"({"name":"m","density_kg_m3":1,"friction_angle_deg":2,"cohesion_Pa":3,"viscosity_Pa_s":4})"));
   document["gravity_m_s2"] = 5;
+  document["terrain"]["front_thickness_m"] = 0.75;
   document["rheology"] = {
       {"shear_rate", "paper"}, {"yield", "regularized"}, {"min_shear_rate_1_s", 6}, {"shear_modulus_Pa", 7}};
   document["numerics"] = {{"kernel", "wendland_c2"},
@@ -166,6 +167,7 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
   const Model m = test::load(document).value.model;
   EXPECT_EQ(m.materials[0], (Material{"m", 1, 2 * std::numbers::pi / 180, 3, 4}));
   EXPECT_EQ(m.g, (Vec2{0, -5}));
+  EXPECT_EQ(m.terrain.front_thickness, 0.75);
   EXPECT_EQ(m.rheology, (Rheology{ShearRate::paper, Yield::regularized, 6, 7.0}));
   EXPECT_EQ(m.numerics, (Numerics{KernelShape::wendland_c2, 1.25, 8.0, 9, VelocityJump::reconstructed, 10,
                                   Continuity::mass, DensityFilter::delta_sph, 11, 0.12, false,
@@ -233,6 +235,8 @@ TEST(LoadCase, DerivedDefaultsOfTheTerrain) {
   const Terrain t = test::load(with("/terrain/bed_m", {{-1, 5.5}, {10, 0}, {40, 0}})).value.model.terrain;
   EXPECT_EQ(t.run_out.from, -1.0);
   EXPECT_EQ(t.wall_top, 8.0 + 5 * 0.5) << "over the slide";
+  EXPECT_EQ(t.front_thickness, 1.5 * 0.5);
+  EXPECT_EQ(test::load(with("/particle_spacing_m", 0.05)).value.model.terrain.front_thickness, 0.1);
   const Terrain high = test::load(with("/terrain/bed_m", {{-9, 20}, {0, 5}, {10, 0}, {40, 0}})).value.model.terrain;
   EXPECT_EQ(high.wall_top, 20.0 + 5 * 0.5) << "over the bed where a wall stands";
 }

@@ -25,7 +25,8 @@ TEST(Progress, SaysWhereTheStudyStands) {
   // 6 runs in 60 s: 360 an hour; 4 are left: 40 s.
   EXPECT_EQ(progress_line({.planned = 8, .running = 4, .pending_reason = "waits for rain"}),
             "0/8 done, 0 failed, 4 running, waits for rain");
-  EXPECT_EQ(progress_line(half), "3/8 done, 1 failed, mean run-out 34.12 +/- 0.50 m, 40 s left, 2 running, 360/h");
+  EXPECT_EQ(progress_line(half),
+            "3/8 done, 1 failed, mean farthest particle 34.12 +/- 0.50 m, 40 s left, 2 running, 360/h");
   EXPECT_FALSE(time_left({.planned = 8}));
   EXPECT_DOUBLE_EQ(*time_left(half), (8 - 3 - 1 + 2 - 2) * 60.0 / 6.0);
 }
@@ -35,7 +36,7 @@ TEST(Progress, TheBarFillsAndFits) {
   EXPECT_EQ(progress_bar({.planned = 4, .done = 4}, 32), "[########] 4/4 done, 0 failed, 0");
   EXPECT_EQ(progress_bar({}, 40).size(), 40u);
   EXPECT_EQ(progress_bar(half, 110).size(), 110u);  // the bar takes what the line leaves
-  EXPECT_NE(progress_bar(half, 80).find("mean run-out 34.12 +/- 0.50 m"), std::string::npos);
+  EXPECT_NE(progress_bar(half, 80).find("mean farthest particle 34.12 +/- 0.50 m"), std::string::npos);
 }
 
 TEST(Progress, SummaryNamesTheNumbers) {
@@ -43,6 +44,9 @@ TEST(Progress, SummaryNamesTheNumbers) {
   const std::string text = summary_table(summarize(p, {done(0, 34.0), done(1, 36.0), failed(2, "x")}, {}));
   EXPECT_NE(text.find("4 realizations planned, 2 done, 1 failed; not run yet: 3\n"), std::string::npos) << text;
   EXPECT_NE(text.find("influence_zone_m        35.000  [22.294, 47.706]"), std::string::npos) << text;
+  EXPECT_LT(text.find("front_mass_99_m"), text.find("influence_zone_m")) << text;
+  EXPECT_NE(text.find("\ninfluence_zone_m: the farthest particle, the paper's influence zone\n"), std::string::npos);
+  EXPECT_NE(text.find("\nfront_at_thickness_m: where the deposit is 0.6 m thick\n"), std::string::npos) << text;
   EXPECT_NE(summary_table(summarize(p, {}, {})).find("0 done"), std::string::npos);
 }
 

@@ -133,7 +133,8 @@ class Run(Directory):
     def test_a_bed_that_is_too_short_is_doubtful(self):
         quality = self.assert_says("left_terrain", "doubtful", "particle_spacing_m=0.8", "terrain.bed_m.2.0=28")
         self.assertIn("front_at_open_end", [reason["check"] for reason in quality["reasons"]])
-        bounds = ["influence_zone_m", "front_connected_m", "front_mass_99_m", "front_mass_999_m", "centre_of_mass_x_m"]
+        bounds = ["influence_zone_m", "front_connected_m", "front_mass_99_m", "front_mass_999_m", "centre_of_mass_x_m",
+                  "front_at_thickness_m"]
         self.assertEqual(self.result["lower_bounds"], bounds)  # 5 % of the soil left
 
     def test_a_front_that_ends_on_the_terrain_is_no_lower_bound(self):

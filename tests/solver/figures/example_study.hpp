@@ -20,7 +20,7 @@ inline std::vector<Record> example_records(int made, bool one_failed) {
     r.done = !(one_failed && i == made - 1);
     if (r.done) {
       const double x = 30 + 0.1 * i;
-      r.measures = {x, 0.99 * x, 0.97 * x, 0.98 * x, 0.5 * x};
+      r.measures = {x, 0.99 * x, 0.97 * x, 0.98 * x, 0.5 * x, 0.96 * x};
       r.mean_phi_deg = 25 - 0.1 * i;
       r.captured_variance = 0.0154;
       r.steps = 100;

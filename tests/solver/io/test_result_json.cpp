@@ -26,7 +26,10 @@ RunResult sample_result() {
                        .front_connected = 33.2,
                        .front_mass_99 = 32.3,
                        .front_mass_999 = 33.4,
-                       .centre_of_mass_x = -0.0},
+                       .centre_of_mass_x = -0.0,
+                       .front_at_thickness = 31.5},
+          .front_thickness = 0.6,
+          .notes = {"thrown"},
           .lower_bounds = {"influence_zone_m", "centre_of_mass_x_m"},
           .ending = Ending::at_rest,
           .soil = 12700,
@@ -94,6 +97,9 @@ TEST(ResultJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(d["front_mass_99_m"], 32.3);
   EXPECT_EQ(d["front_mass_999_m"], 33.4);
   EXPECT_EQ(d["centre_of_mass_x_m"], -0.0);
+  EXPECT_EQ(d["front_at_thickness_m"], 31.5);
+  EXPECT_EQ(d["front_thickness_m"], 0.6);
+  EXPECT_EQ(d["notes"], (json{"thrown"}));
   EXPECT_EQ(d["particles"], (json{{"soil", 12700}, {"wall", 4236}}));
   EXPECT_EQ(d["steps"], 30000);
   EXPECT_EQ(d["time_s"], 1.0 / 3.0);
@@ -146,7 +152,7 @@ TEST(ResultJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(d["provenance"]["case_title"], "Geröll \"1\"");
   EXPECT_EQ(d["provenance"]["compiler"], "GNU 12");
   EXPECT_EQ(d["provenance"]["started_utc"], "2025-01-31T12:00:00Z");
-  EXPECT_EQ(result_json(sample_result(), sample_provenance()).begin().key(), "influence_zone_m")
+  EXPECT_EQ(result_json(sample_result(), sample_provenance()).begin().key(), "front_mass_99_m")
       << "what matters most comes first";
 }
 
@@ -177,7 +183,9 @@ TEST(ResultJson, ComesBack) {
 TEST(ResultJson, OfAnEarlierVersionIsReadWithoutWhatCameLater) {
   const TemporaryDirectory dir;
   json earlier = document();
-  for (const char* key : {"backend", "simd", "quality", "warnings", "mass_kg_m", "energy"}) earlier.erase(key);
+  for (const char* key : {"backend", "simd", "quality", "warnings", "mass_kg_m", "energy", "front_at_thickness_m",
+                          "front_thickness_m", "notes"})
+    earlier.erase(key);
   earlier["field"].erase("cov_tan_phi");
   EXPECT_EQ(schema_faults(earlier), "");
   write_file_atomically(dir / "result.json", earlier.dump());
@@ -188,6 +196,9 @@ TEST(ResultJson, OfAnEarlierVersionIsReadWithoutWhatCameLater) {
   EXPECT_EQ(result.quality.verdict, Verdict::not_assessed);
   EXPECT_TRUE(result.quality.reasons.empty() && result.warnings.empty());
   EXPECT_EQ(result.energy, EnergyBudget());
+  EXPECT_TRUE(std::isnan(result.measures.front_at_thickness));
+  EXPECT_EQ(result.front_thickness, 0.0);
+  EXPECT_TRUE(result.notes.empty());
   EXPECT_EQ(result.digest, earlier["digest"]);
 }
 
@@ -199,6 +210,17 @@ TEST(ResultJson, IsReadWithoutAMeasureThatCameLater) {
   const RunResult result = read_result(dir / "result.json").first;
   EXPECT_TRUE(std::isnan(result.measures.front_mass_999));
   EXPECT_EQ(result.measures.front_mass_99, 32.3);
+}
+
+TEST(ResultJson, HasNullForAMeasureThatTheRunHasNot) {
+  const TemporaryDirectory dir;
+  RunResult result = sample_result();
+  result.measures.front_at_thickness = std::nan("");
+  const json without = json::parse(result_json(result, sample_provenance()).dump());
+  EXPECT_TRUE(without["front_at_thickness_m"].is_null());
+  EXPECT_EQ(schema_faults(without), "");
+  write_file_atomically(dir / "result.json", without.dump());
+  EXPECT_TRUE(std::isnan(read_result(dir / "result.json").first.measures.front_at_thickness));
 }
 
 TEST(ResultJson, KeepsTheLargestSeed) {
@@ -251,7 +273,8 @@ TEST(ResultJson, NamesAnyKeyThatIsMissing) {
   for (const std::string& pointer : pointers(document())) {
     const std::string key = pointer.substr(1);
     if (key == "backend" || key == "simd" || key == "quality" || key == "warnings" || key == "mass_kg_m" ||
-        key == "energy" || key == "field/cov_tan_phi" || key == "lower_bounds")
+        key == "energy" || key == "field/cov_tan_phi" || key == "lower_bounds" || key == "front_thickness_m" ||
+        key == "notes")
       continue;  // came later
     if (const Measure* measure = find_measure(key); measure && measure != measure_table.data()) continue;
     const json::json_pointer place(pointer);

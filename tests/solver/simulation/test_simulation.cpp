@@ -154,8 +154,9 @@ TEST(Simulation, SoilThatLeavesThroughAnOpenEndIsCountedAndKept) {
   EXPECT_GE(r.measures.influence_zone, 1.2);
   EXPECT_LT(r.measures.influence_zone, 1.3);
   EXPECT_GT(r.left_domain, r.soil / 100) << "more than 1 % of the mass";
-  EXPECT_EQ(r.lower_bounds, (std::vector<std::string>{"influence_zone_m", "front_connected_m", "front_mass_99_m",
-                                                      "front_mass_999_m", "centre_of_mass_x_m"}));
+  EXPECT_EQ(r.lower_bounds,
+            (std::vector<std::string>{"influence_zone_m", "front_connected_m", "front_mass_99_m", "front_mass_999_m",
+                                      "centre_of_mass_x_m", "front_at_thickness_m"}));
 }
 
 TEST(Simulation, ABlockOnASmootherWallSlidesAtTheWallsFriction) {

@@ -37,9 +37,10 @@ inline Plan plan(std::int64_t realizations) {
 inline Record done(std::int64_t index, double zone) {
   return {.index = index,
           .done = true,
-          .measures = {zone, zone - 0.3, zone - 0.7, zone - 0.4, 0.5 * zone},
+          .measures = {zone, zone - 0.3, zone - 0.7, zone - 0.4, 0.5 * zone, zone - 0.6},
           .mean_phi_deg = 25.0 - 0.1 * static_cast<double>(index % 7),
           .captured_variance = 0.25,
+          .front_thickness = 0.6,
           .steps = 1000 + index,
           .wall_clock = 1.5,
           .digest = "00000000000000" + std::to_string(10 + index % 90)};

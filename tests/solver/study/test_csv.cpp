@@ -33,7 +33,8 @@ std::string refusal(const std::string& text) {
 const std::string head =
     "index,status,influence_zone_m,front_connected_m,front_mass_99_m,front_mass_999_m,centre_of_mass_x_m,mean_friction_"
     "angle_deg,captured_variance,"
-    "steps,wall_clock_s,digest,reason,verdict,verdict_reasons,lower_bounds,left_domain\n";
+    "steps,wall_clock_s,digest,reason,verdict,verdict_reasons,lower_bounds,front_at_thickness_m,left_domain,"
+    "front_thickness_m\n";
 
 /// The header of version 0.1.0.
 const std::string head_0_1_0 = head.substr(0, head.find(",verdict")) + "\n";
@@ -51,9 +52,9 @@ TEST(Csv, OneLineForEachRecord) {
       table_of({r, failed(7, "diverged: at step 12, \"fast\"\nreally"), failed_record(8, "invalid result: a: b")}),
       head +
           "3,done,34.5,34.2,33.8,34.1,0.30000000000000004,24.7,0.25,1003,1.5,0000000000000013,,doubtful,"
-          "\"left_terrain: 2 of 5 left\",\"influence_zone_m centre_of_mass_x_m\",2\n"
-          "7,failed,,,,,,,,,,,\"diverged: at step 12, \"\"fast\"\" really\",,,,\n"
-          "8,failed,,,,,,,,,,,\"invalid result: a: b\",invalid,\"a: b\",,\n");
+          "\"left_terrain: 2 of 5 left\",\"influence_zone_m centre_of_mass_x_m\",33.9,2,0.6\n"
+          "7,failed,,,,,,,,,,,\"diverged: at step 12, \"\"fast\"\" really\",,,,,,\n"
+          "8,failed,,,,,,,,,,,\"invalid result: a: b\",invalid,\"a: b\",,,,\n");
 }
 
 TEST(Csv, ReadsBackExactly) {
@@ -91,14 +92,16 @@ TEST(Csv, ReadsBackExactly) {
   EXPECT_EQ(table_of(back), content(path));
 }
 
-TEST(Csv, AMeasureWithoutAValueIsAnEmptyCell) {  // of a run that was recorded before the measure existed
+TEST(Csv, AMeasureWithoutAValueIsAnEmptyCell) {  // which a run had not, or which it was recorded before
   const TemporaryDirectory directory;
   Record r = done(3, 34.5);
-  r.measures.front_mass_999 = std::numeric_limits<double>::quiet_NaN();
+  r.measures.front_mass_999 = r.measures.front_at_thickness = std::numeric_limits<double>::quiet_NaN();
   write(directory / "t.csv", table_of({r}));
   EXPECT_EQ(content(directory / "t.csv").find("nan"), std::string::npos);
   const std::vector<Record> back = read_csv(directory / "t.csv", "index");
   EXPECT_TRUE(std::isnan(back.at(0).measures.front_mass_999));
+  EXPECT_TRUE(std::isnan(back[0].measures.front_at_thickness));
+  EXPECT_EQ(back[0].front_thickness, r.front_thickness);
   EXPECT_EQ(back[0].measures.centre_of_mass_x, r.measures.centre_of_mass_x);
 }
 
@@ -112,6 +115,8 @@ TEST(Csv, ReadsTheTablesOfVersion010) {
   EXPECT_EQ(back[0].measures.centre_of_mass_x, 12.0);
   EXPECT_EQ(back[0].digest, "0000000000000013");
   EXPECT_TRUE(std::isnan(back[0].left_domain));
+  EXPECT_TRUE(std::isnan(back[0].measures.front_at_thickness));
+  EXPECT_TRUE(std::isnan(back[0].front_thickness));
   EXPECT_EQ(back[0].verdict, Verdict::not_assessed);
   EXPECT_EQ(back[0].objections, "");
   EXPECT_EQ(back[1].reason, "diverged: at step 12");
@@ -122,7 +127,7 @@ TEST(Csv, AMeasureThatTheTableLacksHasNoValue) {
   const TemporaryDirectory directory;
   std::string header = head;
   header.erase(header.find("front_mass_999_m,"), std::string("front_mass_999_m,").size());
-  write(directory / "t.csv", header + "3,done,34.5,34.2,33.8,12,24.7,0.25,1003,1.5,d,,sound,,,0\n");
+  write(directory / "t.csv", header + "3,done,34.5,34.2,33.8,12,24.7,0.25,1003,1.5,d,,sound,,,33.9,0,0.6\n");
   const std::vector<Record> back = read_csv(directory / "t.csv", "index");
   EXPECT_TRUE(std::isnan(back.at(0).measures.front_mass_999));
   EXPECT_EQ(back[0].measures.centre_of_mass_x, 12.0);
@@ -132,7 +137,7 @@ TEST(Csv, AMeasureThatTheTableLacksHasNoValue) {
 
 TEST(Csv, AcceptsLineEndsOfOtherSystems) {
   const TemporaryDirectory directory;
-  write(directory / "t.csv", "index" + head.substr(5, head.size() - 6) + "\r\n3,failed,,,,,,,,,,,\"x\",,,,\r\n");
+  write(directory / "t.csv", "index" + head.substr(5, head.size() - 6) + "\r\n3,failed,,,,,,,,,,,\"x\",,,,,,\r\n");
   EXPECT_EQ(read_csv(directory / "t.csv", "index").front().reason, "x");
 }
 
@@ -144,15 +149,15 @@ TEST(Csv, NamesFileLineAndFault) {
   EXPECT_NE(refusal("index,status,steps,steps\n").find("the column \"steps\" stands there twice"), std::string::npos);
   EXPECT_NE(refusal("index,status\n").find("the column \"influence_zone_m\" is missing"), std::string::npos);
   EXPECT_NE(refusal(head_0_1_0.substr(0, 40) + "\n").find("is unknown"), std::string::npos);  // cut off
-  EXPECT_NE(refusal(head + "3,done,1,1,1,1,1,1,1,1,1,d,,fine,,,\n").find("t.csv:2 has the unknown verdict \"fine\""),
+  EXPECT_NE(refusal(head + "3,done,1,1,1,1,1,1,1,1,1,d,,fine,,,,,\n").find("t.csv:2 has the unknown verdict \"fine\""),
             std::string::npos);
-  EXPECT_NE(refusal(good + "4,done,1\n").find("t.csv:3 has 3 fields instead of 17"), std::string::npos);
-  EXPECT_NE(refusal(good + "3,failed,,,,,,,,,,,x,,,,\n").find("t.csv:3 has the index 3 out of order, or twice"),
+  EXPECT_NE(refusal(good + "4,done,1\n").find("t.csv:3 has 3 fields instead of 19"), std::string::npos);
+  EXPECT_NE(refusal(good + "3,failed,,,,,,,,,,,x,,,,,,\n").find("t.csv:3 has the index 3 out of order, or twice"),
             std::string::npos);
-  EXPECT_NE(refusal(head + "3,lost,,,,,,,,,,,x,,,,\n").find("t.csv:2 has the status \"lost\""), std::string::npos);
-  EXPECT_NE(refusal(head + "3,done,far,1,1,1,1,1,1,1,1,d,,,,,\n").find("t.csv:2 field 3: \"far\" is not a number"),
+  EXPECT_NE(refusal(head + "3,lost,,,,,,,,,,,x,,,,,,\n").find("t.csv:2 has the status \"lost\""), std::string::npos);
+  EXPECT_NE(refusal(head + "3,done,far,1,1,1,1,1,1,1,1,d,,,,,,,\n").find("t.csv:2 field 3: \"far\" is not a number"),
             std::string::npos);
-  EXPECT_NE(refusal(head + "3,done,nan,1,1,1,1,1,1,1,1,d,,,,,\n").find("\"nan\" is not a number"), std::string::npos);
+  EXPECT_NE(refusal(head + "3,done,nan,1,1,1,1,1,1,1,1,d,,,,,,,\n").find("\"nan\" is not a number"), std::string::npos);
   EXPECT_NE(refusal(head + "3,failed,,,,,,,,,,,\"x\n").find("t.csv:2 has 0 fields"),
             std::string::npos);  // an open quote
 }

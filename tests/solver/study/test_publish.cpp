@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "studies.hpp"
 #include "study/publish.hpp"
 #include "study/run_study.hpp"
@@ -127,4 +129,32 @@ TEST(Tables, EndWhereTheStudyStopped) {
   EXPECT_EQ(read_tables(study(d / "all", p, runs)).runs.size(), 14u);
   p.study.stop_half_width = 1.0;
   EXPECT_EQ(read_tables(study(d / "stopped", p, runs)).runs.size(), 10u);
+}
+
+TEST(RunRecord, AMeasureThatTheRunHasNotHasNoValue) {
+  const TemporaryDirectory directory;
+  Json result = {{"digest", "d"},
+                 {"ending", "end_time"},
+                 {"at_rest", true},
+                 {"steps", 1},
+                 {"wall_clock_s", 1.0},
+                 {"front_at_thickness_m", nullptr},
+                 {"front_thickness_m", 0.6},
+                 {"field", {{"mean_friction_angle_deg", 25.0}, {"captured_variance", 1.0}}},
+                 {"provenance", {{"seed", 42}, {"case_hash", "h"}, {"realization", 3}, {"perturbation", nullptr}}}};
+  for (const Measure& measure : measure_table)
+    if (!measure.optional) result[measure.key] = 30.0;
+  const auto read = [&] {
+    write(directory / "result.json", result.dump());
+    return read_result(directory / "result.json", realization(3), {.seed = 42, .case_hash = "h"});
+  };
+  const std::optional<Record> record = read();
+  ASSERT_TRUE(record);
+  EXPECT_TRUE(std::isnan(record->measures.front_at_thickness));
+  EXPECT_EQ(record->front_thickness, 0.6);
+  EXPECT_EQ(record->measures.front_mass_99, 30.0);
+  result["front_at_thickness_m"] = 29.0;
+  EXPECT_EQ(read()->measures.front_at_thickness, 29.0);
+  result["front_mass_99_m"] = nullptr;
+  EXPECT_FALSE(read()) << "a damaged document: this measure has every run";
 }

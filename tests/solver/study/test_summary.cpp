@@ -62,6 +62,16 @@ TEST(Summary, AMeasureWithoutAValueDoesNotCount) {  // a run that was recorded b
   EXPECT_EQ(against_schema(study), "");
 }
 
+TEST(Summary, LeadsWithTheFrontOfTheMass) {
+  const auto study = summarize(plan(8), some_runs(), {});
+  EXPECT_EQ(study["leading_quantity"], "front_mass_99_m");
+  EXPECT_EQ(study["quantities"].begin().key(), "front_mass_99_m");
+  EXPECT_EQ(std::next(study["quantities"].begin()).key(), "influence_zone_m");
+  EXPECT_EQ(study["quantities"].size(), measure_table.size());
+  EXPECT_EQ(study["front_thickness_m"], 0.6);
+  EXPECT_TRUE(summarize(plan(8), {}, {})["front_thickness_m"].is_null());
+}
+
 TEST(Summary, StatisticsOfEachMeasureAreThoseOfItsColumn) {
   const auto study = summarize(plan(8), some_runs(), {});
   for (const Measure& column : measure_table) {
