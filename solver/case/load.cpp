@@ -32,6 +32,12 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
        "spacing "
        "behind the bed.",
        "nodes as in [Z20] Fig. 3"});
+  in.object(
+      "particle_lattice",
+      "How the lattice of particle_placement cells lies, mirrored where the slide goes to the left: to measure what "
+      "the arrangement of the particles does to a result.",
+      Absent::skip, [&](ObjectReader& section) { read_lattice(section, m); });
+  if (m.lattice == Lattice{}) in.remove_record("particle_lattice");
   in.integer("max_particles", m.max_particles, {"", 1.0, 1e8},
              {"Refuse to fill more soil and wall particles than this.", "memory; see talus validate"});
   double gravity = -m.g.y;

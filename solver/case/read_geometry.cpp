@@ -6,6 +6,7 @@
 #include "case/joined_bed.hpp"
 #include "case/outline.hpp"
 #include "case/sections.hpp"
+#include "math/angle.hpp"
 #include "particles/geometry.hpp"
 #include "support/text.hpp"
 
@@ -213,6 +214,20 @@ Vertices join_surfaces(ObjectReader& in, const SlideInput& slide, const Vertices
 }
 
 }  // namespace
+
+void read_lattice(ObjectReader& in, Model& m) {
+  constexpr Quantity share_of_a_cell{"spacings", 0.0, 1.0, false, true};
+  double angle_deg = 0.0;
+  in.number(
+      "shift_x_spacings", m.lattice.shift.x, share_of_a_cell,
+      {"Shift of the lattice along its rows, from the lower left corner of the slide's bounding box.", "numerical"});
+  in.number("shift_y_spacings", m.lattice.shift.y, share_of_a_cell, {"The same across its rows.", "numerical"});
+  in.number("angle_deg", angle_deg, {"deg", -90.0, 90.0},
+            {"Angle by which the lattice is turned about that corner, counter-clockwise.", "numerical"});
+  m.lattice.angle = radians(angle_deg);
+  if (m.placement != Placement::cells)
+    in.fault("", "needs particle_placement \"cells\", which keeps the mass of the outlines on any lattice");
+}
 
 SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, const MaterialInput& fallback) {
   SlideInput slide;

@@ -27,6 +27,9 @@ struct SourceLocations {
 /// @param origins    returns where the vertices of bed and slide are written
 Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceLocations& origins);
 
+/// @param m  its placement is read already
+void read_lattice(ObjectReader& in, Model& m);
+
 /// A material and its friction angles as written, so that a layer which inherits an angle repeats it exactly.
 struct MaterialInput : Material {
   double friction_angle_deg = 0.0;

@@ -37,6 +37,7 @@ struct Demand {
   double step = 0.0;  ///< [s]
   double steps = 0.0;
   double memory = 0.0;  ///< [bytes]
+  FlowConstants flow;
   std::optional<FieldSummary> field;
   std::vector<Fault> warnings;
 };
@@ -50,6 +51,7 @@ Demand measure(const Case& c) {
   d.step = first_step(c.model);
   d.steps = std::ceil(c.model.time.end / d.step * (1.0 - 1e-12));
   d.memory = run_memory(static_cast<double>(d.soil + d.wall));
+  d.flow = flow_constants(c.model);
   if (c.field) {
     const RandomField field(*c.field, bounding_box(c.model.slide), c.model.dx);
     d.field = field_summary(*c.field, field);
@@ -136,6 +138,13 @@ void print_proposals(const Model& model) {
   }
 }
 
+/// The numerical constants that have defaults in words.
+Json numerics_json(const FlowConstants& flow) {
+  Json moduli = Json::array();
+  for (const ConstitutiveParameters& soil : flow.soils) moduli.push_back(soil.G);
+  return {{"sound_speed_m_s", flow.c_s}, {"shear_modulus_Pa", moduli}};
+}
+
 Json to_json(const LoadedCase& loaded, const Demand& d) {
   Json out = {{"valid", true},
               {"title", loaded.value.title},
@@ -150,6 +159,7 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
   out["files"] = loaded.files;
   out["ground"] = to_json(report, model.terrain);
   out["slide"] = slide_json(report, model);
+  out["numerics"] = numerics_json(d.flow);
   if (d.field)
     out["field"] = {
         {"terms", d.field->terms}, {"captured_variance", d.field->captured_variance}, {"cov_tan_phi", d.field->cov}};

@@ -52,6 +52,29 @@ Moments moments(const Outline& polygon) {
   return sum;
 }
 
+/// Coordinates along the rows and columns of a lattice, in dx from the corner of a cell.
+class LatticeFrame {
+ public:
+  /// @param corner  about which the lattice is turned and from which it is shifted [m]
+  LatticeFrame(Vec2 corner, double dx, const Lattice& lattice)
+      : corner_(corner), dx_(dx), shift_(lattice.shift), cos_(std::cos(lattice.angle)), sin_(std::sin(lattice.angle)) {}
+
+  Vec2 from_plane(Vec2 x) const {
+    const Vec2 d = (1.0 / dx_) * (x - corner_);
+    return Vec2{cos_ * d.x + sin_ * d.y, cos_ * d.y - sin_ * d.x} - shift_;
+  }
+  Vec2 to_plane(Vec2 u) const {
+    const Vec2 d = u + shift_;
+    return corner_ + dx_ * Vec2{cos_ * d.x - sin_ * d.y, cos_ * d.y + sin_ * d.x};
+  }
+
+ private:
+  Vec2 corner_;
+  double dx_;
+  Vec2 shift_;
+  double cos_, sin_;
+};
+
 /// A lattice cell.
 struct CellIndex {
   std::int64_t row = 0, column = 0;
@@ -182,13 +205,22 @@ class Joined {
   std::vector<std::vector<std::size_t>> members_;  ///< of each group
 };
 
-std::vector<Piece> cut_outline(const std::vector<Vec2>& outline, const Box& box, double dx) {
-  Outline scaled;
-  for (const Vec2& v : outline) scaled.push_back((1.0 / dx) * (v - box.lo));
-  if (signed_area(scaled) < 0.0) std::reverse(scaled.begin(), scaled.end());
-  const auto count = [dx](double extent) { return static_cast<std::int64_t>(std::ceil(extent / dx - negligible)) + 1; };
+/// The slide's outlines in lattice coordinates, counter-clockwise.
+std::vector<SlidePart> in_lattice_coordinates(std::span<const SlidePart> slide, const LatticeFrame& frame) {
+  std::vector<SlidePart> out(slide.begin(), slide.end());
+  for (SlidePart& part : out) {
+    std::ranges::transform(part.outline, part.outline.begin(), [&](Vec2 v) { return frame.from_plane(v); });
+    if (signed_area(part.outline) < 0.0) std::ranges::reverse(part.outline);
+  }
+  return out;
+}
+
+/// @param box  bounding box of the slide, in lattice coordinates as the outline
+std::vector<Piece> cut_outline(const Outline& outline, const Box& box) {
+  const auto first = [](double at) { return static_cast<std::int64_t>(std::floor(at + negligible)); };
+  const auto end = [](double at) { return static_cast<std::int64_t>(std::ceil(at - negligible)) + 1; };
   std::vector<Piece> pieces;
-  cut_into_cells(scaled, {0, 0}, {count(box.height()), count(box.width())}, pieces);
+  cut_into_cells(outline, {first(box.lo.y), first(box.lo.x)}, {end(box.hi.y), end(box.hi.x)}, pieces);
   return Joined(std::move(pieces)).groups();
 }
 
@@ -203,17 +235,20 @@ Vec2 clear_of_walls(Vec2 x, double distance, const Ground& ground) {
   return x;
 }
 
-std::vector<SoilPoint> fill_with_cut_cells(std::span<const SlidePart> slide, const Ground& ground, double dx) {
-  const Box box = bounding_box(slide);
+std::vector<SoilPoint> fill_with_cut_cells(std::span<const SlidePart> slide, const Ground& ground, double dx,
+                                           const Lattice& lattice) {
+  const LatticeFrame frame(bounding_box(slide).lo, dx, lattice);
+  const std::vector<SlidePart> parts = in_lattice_coordinates(slide, frame);
+  const Box box = bounding_box(parts);
   struct Placed {
     CellIndex cell;
     SoilPoint point;
   };
   std::vector<Placed> placed;
-  for (const SlidePart& part : slide)
-    for (const Piece& piece : cut_outline(part.outline, box, dx)) {
-      const Vec2 x{box.lo.x + (static_cast<double>(piece.cell.column) + piece.centroid.x) * dx,
-                   box.lo.y + (static_cast<double>(piece.cell.row) + piece.centroid.y) * dx};
+  for (const SlidePart& part : parts)
+    for (const Piece& piece : cut_outline(part.outline, box)) {
+      const Vec2 x = frame.to_plane({static_cast<double>(piece.cell.column) + piece.centroid.x,
+                                     static_cast<double>(piece.cell.row) + piece.centroid.y});
       placed.push_back({piece.cell, {clear_of_walls(x, least_distance * dx, ground), part.material, piece.area}});
     }
   std::stable_sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) { return a.cell < b.cell; });
@@ -270,14 +305,15 @@ std::vector<Polyline> mirrored(std::span<const Polyline> lines) {
 }  // namespace
 
 std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<const Polyline> walls, double dx,
-                                  Placement placement, SlidesTo slides_to) {
+                                  Placement placement, SlidesTo slides_to, const Lattice& lattice) {
   if (slides_to == SlidesTo::left) {
-    std::vector<SoilPoint> points = fill_slide(mirrored(slide), mirrored(walls), dx, placement);
+    std::vector<SoilPoint> points =
+        fill_slide(mirrored(slide), mirrored(walls), dx, placement, SlidesTo::right, lattice);
     for (SoilPoint& p : points) p.x = mirrored(p.x);
     return points;
   }
   const Ground ground({walls.begin(), walls.end()});
-  if (placement == Placement::cells) return fill_with_cut_cells(slide, ground, dx);
+  if (placement == Placement::cells) return fill_with_cut_cells(slide, ground, dx, lattice);
   return fill_with_lattice_points(slide, ground, dx, placement == Placement::nodes);
 }
 

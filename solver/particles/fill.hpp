@@ -21,9 +21,9 @@ constexpr double least_cells = 0.5;
 /// Least distance from a wall line at which a particle of Placement::cells starts, out of reach of GroundContact [dx].
 constexpr double least_distance = 0.2;
 
-/// Fills the outlines with soil particles, row by row from the bottom left of their bounding box, where the lattice
-/// of spacing dx begins; for a slide that goes to the left from its bottom right, so that mirrored slides are
-/// filled alike.
+/// Fills the outlines with soil particles, row by row of a lattice of spacing dx that begins at the lower left corner
+/// of their bounding box; for a slide that goes to the left at the lower right one, so that mirrored slides are filled
+/// alike.
 /// - Placement::cells: one particle at the centroid of each cell, cut at the outline; pieces smaller than least_cells
 ///   join the piece of their outline with which they share the longest edge. The areas add up to that of the outlines.
 ///   Centroids nearer to a wall line than least_distance are moved away from it.
@@ -31,7 +31,9 @@ constexpr double least_distance = 0.2;
 ///   than dx/2 to a wall line; each stands for a whole cell.
 /// @param walls  as wall_lines() returns them, at least one
 /// @param dx     particle spacing [m], > 0
+/// @param lattice  shift and angle of the lattice, with Placement::cells
 std::vector<SoilPoint> fill_slide(std::span<const SlidePart> slide, std::span<const Polyline> walls, double dx,
-                                  Placement placement, SlidesTo slides_to = SlidesTo::right);
+                                  Placement placement, SlidesTo slides_to = SlidesTo::right,
+                                  const Lattice& lattice = {});
 
 }  // namespace talus

@@ -79,4 +79,12 @@ enum class Placement {
   nodes,  ///< nodes of the lattice, edges included, as in [Z20] Fig. 3: the wall line lies spacing/2 behind the bed
 };
 
+/// How the square lattice of Placement::cells lies: by default along x and y from the lower left corner of the slide's
+/// bounding box. In a slide that goes to the left it is mirrored.
+struct Lattice {
+  Vec2 shift;          ///< of the corner, along the lattice's own axes [dx]
+  double angle = 0.0;  ///< by which it is turned about that corner, counter-clockwise [rad]
+  bool operator==(const Lattice&) const = default;
+};
+
 }  // namespace talus

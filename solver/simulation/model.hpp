@@ -36,7 +36,8 @@ struct Model {
   double left_out = 0.0;            ///< mass of films that the outlines held, too thin for particles [kg/m]
   double dx = 0.1;                  ///< particle spacing [m], > 0
   Placement placement = Placement::cells;
-  Vec2 g{0.0, -9.81};  ///< gravity [m/s2]
+  Lattice lattice = {};  ///< with Placement::cells
+  Vec2 g{0.0, -9.81};    ///< gravity [m/s2]
   Rheology rheology;
   Numerics numerics;
   Walls walls;

@@ -26,7 +26,8 @@ ParticlePlan plan_particles(const Model& model) {
                                                  " particles, more than the limit of " +
                                                  std::to_string(model.max_particles) +
                                                  " (max_particles); use a larger spacing");
-  ParticlePlan plan{fill_slide(model.slide, walls, model.dx, model.placement, model.terrain.run_out.to), {}};
+  ParticlePlan plan{fill_slide(model.slide, walls, model.dx, model.placement, model.terrain.run_out.to, model.lattice),
+                    {}};
   for (std::size_t b = 0; b < walls.size(); ++b)
     std::ranges::move(fill_walls(walls[b], model.dx, model.walls.layers, static_cast<std::int32_t>(b)),
                       std::back_inserter(plan.walls));

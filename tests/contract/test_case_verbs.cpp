@@ -75,6 +75,16 @@ TEST(Validate, ListsTheRateDependenceOfSoilTypesWhereNoneIsStated) {
   EXPECT_EQ(talus(command + "1500").out.find("rate dependence"), std::string::npos);
 }
 
+TEST(Validate, SaysWhatSpeedOfSoundAndShearModulusAreInForce) {
+  const auto numerics = [](const std::string& set) {
+    return nlohmann::json::parse(talus("validate --json " + good + set).out)["numerics"];
+  };
+  EXPECT_EQ(numerics(""), (nlohmann::json{{"sound_speed_m_s", 120.0}, {"shear_modulus_Pa", {1e6, 1e6}}}));
+  const auto derived = numerics(" --set rheology.shear_modulus_Pa=null");
+  EXPECT_NEAR(derived["shear_modulus_Pa"][1].get<double>() / derived["shear_modulus_Pa"][0].get<double>(),
+              1800.0 / 2000.0, 1e-12);
+}
+
 TEST(Validate, SaysWhatWasMadeOfTheGround) {
   const auto report = [](const std::string& name, const std::string& set = "") {
     return nlohmann::json::parse(

@@ -6,6 +6,7 @@ import numpy as np
 
 import talus_runs
 from experiment import at_most, table, within
+from incline import slope
 from snapshots import Snapshots
 
 TITLE = "Rest and the angle of failure"
@@ -86,12 +87,6 @@ def layer(theta, spacing, seconds, **rheology):
             "material": {"density_kg_m3": 2000, "friction_angle_deg": PHI, "cohesion_Pa": 0},
             "rheology": rheology, "numerics": {"sound_speed_m_s": 10 * math.sqrt(2 * 9.81 * THICKNESS)},
             "time": {"end_s": seconds, "snapshot_times_s": [seconds - 1, seconds - 0.5]}, "study": {"realizations": 1}}
-
-
-def slope(theta):
-    """Unit vectors down the slope and away from it."""
-    angle = math.radians(theta)
-    return np.array([math.cos(angle), -math.sin(angle)]), np.array([math.sin(angle), math.cos(angle)])
 
 
 def layer_fails(work, theta, spacing, norm):

@@ -1,5 +1,6 @@
 """Runs of the talus program for the experiments: one directory a run, never run twice, safe to kill and repeat."""
 
+import concurrent.futures
 import csv
 import json
 import os
@@ -54,6 +55,12 @@ def study(case, directory, realizations, settings=None, workers=os.cpu_count(), 
     call(["study", case_file(case, directory), "--out", directory, "--realizations", realizations, "--seed", seed, "--workers", workers,
           "--threads", 1, "--no-figures", *(["--range", first, realizations - 1] if first else []), *override(settings or {})])
     return json.loads((directory / "study.json").read_text())
+
+
+def in_parallel(function, jobs):
+    """[function(job), ...] with as many at a time as there are processors; for functions that wait for talus."""
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(function, jobs))
 
 
 def history(directory):

@@ -25,6 +25,7 @@ TEST(LoadCase, DefaultsAreThoseOfTheStructs) {
   EXPECT_EQ(c.study, StudySpec{});
   EXPECT_EQ(c.model.g, Model{}.g);
   EXPECT_EQ(c.model.placement, Model{}.placement);
+  EXPECT_EQ(c.model.lattice, Lattice{});
   EXPECT_EQ(c.model.max_particles, Model{}.max_particles);
   EXPECT_EQ(c.model.time.snapshots, TimeControl{}.snapshots);
   EXPECT_EQ(c.model.time.stop_at_rest, TimeControl{}.stop_at_rest);
@@ -145,6 +146,7 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
            Json::parse(R"({"name":"m","density_kg_m3":1,"friction_angle_deg":2,"cohesion_Pa":3,"viscosity_Pa_s":4})"));
   document["gravity_m_s2"] = 5;
   document["terrain"]["front_thickness_m"] = 0.75;
+  document["particle_lattice"] = {{"shift_x_spacings", 0.25}, {"shift_y_spacings", 0.5}, {"angle_deg", 45}};
   document["rheology"] = {
       {"shear_rate", "paper"}, {"yield", "regularized"}, {"min_shear_rate_1_s", 6}, {"shear_modulus_Pa", 7}};
   document["numerics"] = {{"kernel", "wendland_c2"},
@@ -168,6 +170,7 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
   EXPECT_EQ(m.materials[0], (Material{"m", 1, 2 * std::numbers::pi / 180, 3, 4}));
   EXPECT_EQ(m.g, (Vec2{0, -5}));
   EXPECT_EQ(m.terrain.front_thickness, 0.75);
+  EXPECT_EQ(m.lattice, (Lattice{{0.25, 0.5}, std::numbers::pi / 4}));
   EXPECT_EQ(m.rheology, (Rheology{ShearRate::paper, Yield::regularized, 6, 7.0}));
   EXPECT_EQ(m.numerics, (Numerics{KernelShape::wendland_c2, 1.25, 8.0, 9, VelocityJump::reconstructed, 10,
                                   Continuity::mass, DensityFilter::delta_sph, 11, 0.12, false,
@@ -296,6 +299,8 @@ TEST(CaseHash, FollowsWhatDecidesTheRuns) {
   EXPECT_EQ(test::load(with("/study", {{"realizations", 7}, {"seed", 3}, {"histogram_edges_m", {1, 2}}})).hash, hash);
   EXPECT_EQ(test::load(with("/particle_spacing_m", 0.5)).hash, hash);
   EXPECT_EQ(test::load(with("/numerics/cfl", Numerics{}.cfl)).hash, hash) << "a default spelt out";
+  EXPECT_EQ(test::load(with("/particle_lattice", {{"angle_deg", 0}})).hash, hash);
+  EXPECT_NE(test::load(with("/particle_lattice", {{"angle_deg", 15}})).hash, hash);
   EXPECT_NE(test::load(with("/numerics/cfl", 0.2)).hash, hash);
   EXPECT_NE(test::load(with("/study/sampling", "latin_hypercube")).hash, hash);
   EXPECT_NE(test::load(with("/material/friction_angle_deg", 30.000001)).hash, hash);

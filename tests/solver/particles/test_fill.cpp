@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -154,6 +155,76 @@ TEST(Fill, TheLatticeHangsOnTheSlide) {
       EXPECT_NEAR(there[k].cells, here[k].cells, 1e-6);
     }
   }
+}
+
+const std::vector<Lattice> lattices{
+    {{0.25, 0.5}}, {{0.9, 0.1}}, {{}, radians(15)}, {{}, radians(45)}, {{0.3, 0.7}, radians(-70)}};
+
+TEST(Lattice, AnyLatticeKeepsMassAndCentreOfMass) {
+  const std::vector<Vec2> slope{{0, 8.2}, {14.202, 0}, {21.325, 0}, {9.125, 12.2}, {0, 12.2}};
+  const std::vector<Vec2> triangle{{0.13, 0.2}, {4.1, 1.3}, {1.7, 3.9}};
+  const Vec2 centre = (1.0 / 3.0) * (triangle[0] + triangle[1] + triangle[2]);
+  for (const Lattice& lattice : lattices) {
+    const auto fill = [&](const std::vector<Vec2>& outline, double dx) {
+      return fill_slide(std::vector<SlidePart>{{outline, 0}}, deep, dx, Placement::cells, SlidesTo::right, lattice);
+    };
+    EXPECT_NEAR(filled(fill(slope, 0.4), 0.4), area(slope), 1e-5 * area(slope));
+    EXPECT_NEAR(filled(fill(slab(4.0, 0.3, radians(30)), 0.5), 0.5), 4.0 * 0.3, 1e-5);
+    Vec2 first;
+    for (const SoilPoint& p : fill(triangle, 0.3)) first += p.cells * 0.3 * 0.3 * p.x;
+    EXPECT_NEAR(first.x / area(triangle), centre.x, 1e-6);
+    EXPECT_NEAR(first.y / area(triangle), centre.y, 1e-6);
+  }
+}
+
+TEST(Lattice, WholeCellsStandOnTheLattice) {
+  const double dx = 0.25, width = 20.0, height = 10.0;
+  const Vec2 corner{3.0, 7.0};
+  const std::vector<Vec2> outline{corner, corner + Vec2{width, 0}, corner + Vec2{width, height},
+                                  corner + Vec2{0, height}};
+  const auto from_half = [](double u) { return u - 0.5 - std::round(u - 0.5); };
+  for (const Lattice& lattice : lattices) {
+    int whole = 0;
+    const double c = std::cos(lattice.angle), s = std::sin(lattice.angle);
+    const auto points =
+        fill_slide(std::vector<SlidePart>{{outline, 0}}, deep, dx, Placement::cells, SlidesTo::right, lattice);
+    for (const SoilPoint& p : points) {
+      if (p.cells != 1.0) continue;
+      ++whole;
+      const Vec2 d = (1.0 / dx) * (p.x - corner);
+      EXPECT_NEAR(from_half(c * d.x + s * d.y - lattice.shift.x), 0.0, 1e-9);
+      EXPECT_NEAR(from_half(c * d.y - s * d.x - lattice.shift.y), 0.0, 1e-9);
+    }
+    // Cells that the edges cut lie within a diagonal of them; a particle stands for at least half a cell.
+    const double cells = width * height / (dx * dx), rim = std::sqrt(2.0) * 2.0 * (width + height) / dx;
+    EXPECT_GE(whole, cells - 2.0 * rim);
+    EXPECT_LE(std::abs(static_cast<double>(points.size()) - cells), rim);
+  }
+}
+
+TEST(Lattice, AQuarterTurnIsTheSameLattice) {
+  // Pieces of 0.8, 0.7 and 0.56 cells: none is joined to another.
+  const std::vector<SlidePart> slide{{{{1, 2}, {1 + 4.32, 2}, {1 + 4.32, 2 + 2.28}, {1, 2 + 2.28}}, 0}};
+  const auto here = fill_slide(slide, deep, 0.4, Placement::cells);
+  EXPECT_EQ(here.size(), 11u * 6u);
+  for (double turn : {90.0, -90.0}) {
+    const auto turned = fill_slide(slide, deep, 0.4, Placement::cells, SlidesTo::right, {{}, radians(turn)});
+    ASSERT_EQ(turned.size(), here.size());
+    for (const SoilPoint& p : turned)
+      EXPECT_TRUE(std::ranges::any_of(
+          here, [&](const SoilPoint& q) { return norm(p.x - q.x) < 1e-9 && std::abs(p.cells - q.cells) < 1e-9; }))
+          << p.x.x << " " << p.x.y;
+  }
+}
+
+TEST(Lattice, IsMirroredWithTheSlide) {
+  const std::vector<SlidePart> right{{{{0, 5}, {10, 0}, {12, 0}, {5, 8}, {0, 8}}, 0}};
+  const std::vector<SlidePart> left{{{{0, 5}, {-10, 0}, {-12, 0}, {-5, 8}, {0, 8}}, 0}};
+  const Lattice lattice{{0.25, 0.5}, radians(15)};
+  const auto there = fill_slide(right, deep, 0.5, Placement::cells, SlidesTo::right, lattice);
+  const auto back = fill_slide(left, deep, 0.5, Placement::cells, SlidesTo::left, lattice);
+  ASSERT_EQ(there.size(), back.size());
+  for (std::size_t k = 0; k < there.size(); ++k) EXPECT_EQ(back[k].x, (Vec2{-there[k].x.x, there[k].x.y}));
 }
 
 TEST(Fill, NoParticleStartsWithinReachOfTheGround) {
