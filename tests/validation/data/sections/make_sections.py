@@ -77,12 +77,12 @@ def write(path, profile):
 LEFT = {"left_end": "open", "right_end": "wall"}  # ends of a section whose slide goes to the left
 
 
-def case(name, title, description, spacing, material, end, terrain=None, **rest):
-    """The case as a dictionary; the run ends at rest, or at `end` [s]."""
+def case(name, title, description, spacing, material, end, terrain=None, stop=True, **rest):
+    """The case as a dictionary; the run ends at rest, by the rule of `stop`, or at `end` [s]."""
     return {"title": title, "description": description, "particle_spacing_m": spacing,
             "terrain": {"bed_csv": f"{name}-bed.csv", **(terrain or {})},
             "slide": {"ground_surface_csv": f"{name}-ground.csv", "slip_surface_csv": f"{name}-slip.csv"},
-            "material": material, "time": {"end_s": end, "stop_at_rest": True}, **rest,
+            "material": material, "time": {"end_s": end, "stop_at_rest": stop}, **rest,
             "study": {"realizations": 1, "seed": 1}}
 
 
@@ -127,7 +127,7 @@ def ledges(raw):
     save("ledges", ground, slip, case(
         "ledges", "Ledges surveyed by lidar",
         "Lower part of the survey of the case scarp: ledges of 6 and 7 m. The slip surface is assumed.",
-        0.5, material, 100, numerics={"sound_speed_m_s": 100}))
+        0.5, material, 150, stop={"speed_m_s": 0.005}, numerics={"sound_speed_m_s": 100}))
 
 
 def river_bank(raw):
@@ -156,7 +156,7 @@ def valley_side(raw):
     save("valley-side", ground, slip, case(
         "valley-side", "Valley side on a national grid",
         "Elevations in whole metres on a grid of 2 m. Chainage is the easting. The slip surface is assumed.",
-        1.0, material, 100, numerics={"sound_speed_m_s": 120}))
+        0.8, material, 100, numerics={"sound_speed_m_s": 120}))
 
 
 def alpine(raw):
@@ -211,7 +211,7 @@ def layered(_):
     document = case("layered", "Slope of three soils",
                     "Problem 1(c) of the ACADS review (Giam and Donald 1989): published profile, interfaces, unit "
                     "weight and critical circle. Half of the published strengths, so that the slope fails.",
-                    0.25, {"density_kg_m3": 1988, "friction_angle_deg": 20}, 20, LEFT, numerics={"sound_speed_m_s": 60})
+                    0.25, {"density_kg_m3": 1988, "friction_angle_deg": 20, "viscosity_Pa_s": 1000}, 20, LEFT, numerics={"sound_speed_m_s": 60})
     document["slide"] = {"outlines": outlines}
     write(HERE / "layered-bed.csv", bed(ground, slip))
     (HERE / "layered.json").write_text(json.dumps(document, indent=1) + "\n")
