@@ -159,7 +159,7 @@ void check_choices(const Case& c, Faults& faults) {
 }
 
 void warn_of_thin_front(const Model& model, std::vector<Fault>& warnings) {
-  if (model.terrain.front_thickness >= 1.5 * model.dx) return;
+  if (model.terrain.front_thickness >= 1.5 * model.dx * (1.0 - 1e-9)) return;  // 0.6 m is enough for 0.4 m
   warnings.push_back({"/terrain/front_thickness_m",
                       to_text(model.terrain.front_thickness) + " m is less than 1.5 particle spacings, " +
                           rounded(1.5 * model.dx) +

@@ -22,8 +22,8 @@ Measures measure_fronts(const Soil& soil, const Terrain& terrain, double dx, std
 /// fronts that reach that end, the front at fixed thickness of a connected body that does, and the centre of mass.
 std::vector<std::string> lower_bounds(const Soil& soil, const Terrain& terrain, const Measures& measures);
 
-/// What a reader of the measures must know: why one has no value, and that particles were thrown far ahead of the
-/// deposit.
+/// What a reader of the measures must know: why one has no value, and that the farthest particle, or more than 1 % of
+/// the mass, lies far ahead of the deposit.
 /// @param front_thickness  [m]
 /// @param dx               particle spacing [m]
 std::vector<std::string> notes_on(const Measures& measures, double front_thickness, double dx);

@@ -14,7 +14,7 @@ constexpr const char* noise_check = "noise_near_spread";
 /// The message of the noise check; nothing where noise is small or unknown.
 std::optional<std::string> noise_objection(const SampleMoments& runout, const SampleMoments& noise) {
   if (!runout.stdev || !noise.stdev || *noise.stdev <= most_noise * *runout.stdev) return std::nullopt;
-  return "the run-out distance has a standard deviation of " + rounded(*runout.stdev) + " m, its numerical noise " +
+  return "the farthest particle has a standard deviation of " + rounded(*runout.stdev) + " m, its numerical noise " +
          rounded(*noise.stdev) + " m, more than a third of it";
 }
 

@@ -203,6 +203,7 @@ TEST(Warnings, AFrontThatASingleRowOfParticlesMayDecide) {
     return test::load(with("/terrain/front_thickness_m", thickness)).warnings;
   };
   EXPECT_TRUE(warnings(1.5 * 0.5).empty());
+  EXPECT_TRUE(test::load(with("/particle_spacing_m", 0.4, with("/terrain/front_thickness_m", 0.6))).warnings.empty());
   ASSERT_EQ(warnings(0.7).size(), 1u);
   EXPECT_EQ(warnings(0.7)[0].pointer, "/terrain/front_thickness_m");
   EXPECT_NE(warnings(0.7)[0].message.find("0.7 m is less than 1.5 particle spacings, 0.75 m"), std::string::npos);

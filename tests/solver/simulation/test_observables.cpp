@@ -179,6 +179,12 @@ TEST(Notes, NameParticlesThatWereThrownAhead) {
   EXPECT_TRUE(notes_on(m, 1.5, 1.0).empty());
   m.front_connected = 20;
   m.front_mass_99 = 25.1;  // more than 1 % of the mass is there
+  ASSERT_EQ(notes_on(m, 1.5, 1.0).size(), 1u);
+  EXPECT_EQ(notes_on(m, 1.5, 1.0)[0],
+            "the front of 99 % of the mass lies 5.1 m ahead of the connected body: more than 1 % of the soil is "
+            "separate from it");
+  m.front_mass_99 = 24.9;
+  m.influence_zone = 29;
   EXPECT_TRUE(notes_on(m, 1.5, 1.0).empty());
 }
 

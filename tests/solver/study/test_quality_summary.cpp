@@ -79,7 +79,7 @@ TEST(QualitySummary, NoiseAboveAThirdOfTheSpreadMakesTheStudyDoubtful) {
   EXPECT_EQ(quality["verdict"], "doubtful");
   EXPECT_EQ(quality["reasons"][0]["check"], "noise_near_spread");
   EXPECT_EQ(quality_line(quality),
-            "study doubtful: the run-out distance has a standard deviation of 0.1 m, its numerical noise 0.0337 m, "
+            "study doubtful: the farthest particle has a standard deviation of 0.1 m, its numerical noise 0.0337 m, "
             "more than a third of it");
 }
 
