@@ -183,7 +183,7 @@ def section(numbers, directory):
             text += f"The fixed thickness is {case['thickness_m']:g} m. "
         for key in keys:
             observed = order(case, key)
-            text += f"{FRONTS[key]}: numerics move the run-out by at most +/- {band(case, key):.2g} m (choices above and finer spacings): quote it with any run-out at this spacing. "
+            text += f"{FRONTS[key]}: numerics move the run-out by at most +/- {band(case, key):.3g} m (choices above and finer spacings): quote it with any run-out at this spacing. "
             text += f"Observed order of the three finest spacings: {'none' if observed is None else f'{observed:.2f}'}.\n\n"
     return text + drawing(numbers, directory)
 
@@ -202,7 +202,6 @@ def drawing(numbers, directory):
         rows = [(choices.index(row["choice"]), row) for row in case["rows"]] + [(len(choices) - 1, row) for row in finer(case)]
         axes.plot([change(case, row, LEADING) / case["spacing_m"] for _, row in rows], [at + 0.15 * (k - 1.5) for at, _ in rows], "o", mfc="none", label=case["title"])
     axes.axvspan(-ONE, ONE, color="0.9", zorder=0)
-    axes.set(xlabel="change of the 99 % front / spacing", yticks=range(len(choices)), yticklabels=choices)
-    axes.invert_yaxis()
+    axes.set(xlabel="change of the 99 % front / spacing", yticks=range(len(choices)), yticklabels=choices, ylim=(len(choices) - 0.5, -0.5))
     axes.legend(fontsize=7)
     return fig.save(figure, directory, "numerics_budget")
