@@ -81,8 +81,8 @@ std::optional<Record> read_result(const fs::path& file, const RunKey& key, const
         place.at(name).get_to(value);
     });
     json.at("digest").get_to(record.digest);
-    for (const Json& key : json.value("lower_bounds", Json::array()))
-      record.lower_bounds += (record.lower_bounds.empty() ? "" : " ") + key.get<std::string>();
+    for (const Json& bound : json.value("lower_bounds", Json::array()))
+      record.lower_bounds += (record.lower_bounds.empty() ? "" : " ") + bound.get<std::string>();
     const bool interrupted = json.at("ending") == "interrupted";
     const auto hash = json.at("provenance").at("case_hash").get<std::string>();
     const bool earlier = std::ranges::find(of.earlier, hash) != of.earlier.end();

@@ -37,8 +37,11 @@ std::vector<double> fronts(const std::string& spacing, const std::filesystem::pa
   const RunHooks silent{.stop_requested = [] { return false; }, .show_progress = [](const Simulation&, double) {}};
   std::vector<double> all;
   for (int k = 0; k < pairs; ++k) {
-    const RunRequest request{
-        .directory = directory / (spacing + "-" + std::to_string(k)), .seed = 5, .realization = k, .version = "test"};
+    RunRequest request;
+    request.directory = directory / (spacing + "-" + std::to_string(k));
+    request.seed = 5;
+    request.realization = k;
+    request.version = "test";
     all.push_back(run_realization(slide_with_circulant_field(spacing), request, silent).result.measures.front_mass_99);
   }
   return all;

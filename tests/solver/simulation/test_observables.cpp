@@ -150,7 +150,8 @@ TEST(FrontAtThickness, LeavesOutSoilThatLeftTheTerrain) {
   soil.n_active = 80;
   const Measures measures = fronts(soil);
   EXPECT_EQ(measures.front_at_thickness, all.front_at_thickness);
-  const Terrain terrain{.bed = {{0, 0}, {20.5, 0}}};
+  Terrain terrain;
+  terrain.bed = {{0, 0}, {20.5, 0}};
   // The front lies before the end, but the body goes on beyond it.
   const std::vector<std::string> bounds = lower_bounds(soil, terrain, measures);
   EXPECT_LT(measures.front_at_thickness, 20.5);
