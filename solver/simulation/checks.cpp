@@ -55,8 +55,8 @@ constexpr Check checks[] = {
      {},
      [](const RunFacts&, double x) {
        return percent(x) +
-              " of the energy went into artificial viscosity and density diffusion, which fall with the spacing, so that "
-              "they decide the run-out: state a viscosity or mu_i, or refine";
+              " of the energy went into artificial viscosity and density diffusion, which fall with the spacing, "
+              "so that they decide the run-out: state a viscosity or mu_i, or refine";
      }},
     // Walls that act on approaching particles only ([Z20]) create energy whenever they switch on and off. A case must
     // ask for that method, and its run is never more than doubtful for it.

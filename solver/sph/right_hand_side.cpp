@@ -144,9 +144,9 @@ struct Passes {
       sum.add(kernel.W(std::sqrt(r2)), {stress(j), soil.p[j], density(j), q(j), soil.c[j], soil.tan_phi[j]},
               dot(vector(k.g), r), 1.0 / (k.c_s * k.c_s));
     });
-    const WallSlip slip = boundary(w).slip;
+    const WallFriction& friction = boundary(w);
     const WallStress<double> wall =
-        sum.value(k, vector(walls.normal(w)), slip == WallSlip::no_slip, slip == WallSlip::free_slip);
+        sum.value(k, vector(walls.normal(w)), friction.tan_phi, friction.slip == WallSlip::free_slip);
     walls.p[w] = wall.p;
     walls.density_ratio[w] = wall.density_ratio;
     walls.sxx[w] = wall.s.xx;

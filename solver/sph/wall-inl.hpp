@@ -89,12 +89,11 @@ struct WallLaw {
 /// The most that a viscous stress may grow on its way to a wall particle [-].
 inline constexpr double max_viscous_growth = 3.0;
 
-/// By how much the soil's deviatoric stress grows on its way to a wall particle. Under its own weight a layer carries
-/// shear in proportion to its depth, as it carries pressure; extrapolated as a constant the shear would lack that of
+/// By how much the soil's deviatoric stress grows on its way to a wall particle. Under its own weight a layer carries a
+/// deviator in proportion to its depth, as it carries pressure; extrapolated as a constant its shear would lack that of
 /// half a support, and a layer of cohesionless soil would slide at 23 instead of 25 degrees. So it grows as the
-/// pressure does, up to the yield stress that the soil would have at the wall particle; what exceeds the yield stress
-/// in the soil is viscous and grows at most threefold. For rough walls only: along a wall that is smoother than the
-/// soil, the wall's friction bounds the shear.
+/// pressure does, up to the yield stress at the wall particle; what exceeds the yield stress in the soil is viscous and
+/// grows at most threefold.
 /// @param size    of the soil's deviator there, sqrt(t:t/2) [Pa]
 /// @param p_wall  extrapolated pressure [Pa]
 /// @param p_soil  the soil's, interpolated without its hydrostatic part [Pa]
@@ -151,17 +150,22 @@ struct WallStressSum {
     t = fma(W, Deviator<Real>{f.s.xx + f.p, f.s.yy + f.p, f.s.xy}, t);
   }
 
-  /// @param rough, smooth  where the boundary has WallSlip::no_slip, WallSlip::free_slip
+  /// @param tan_phi_wall  of the wall's friction angle, infinite where it has none; with it the soil at the wall yields
+  ///                      at the smaller of both
+  /// @param smooth        where the boundary has WallSlip::free_slip
   template <class Mask>
-  HWY_INLINE WallStress<Real> value(const FlowConstants& k, Vector<Real> normal, Mask rough, Mask smooth) const {
+  HWY_INLINE WallStress<Real> value(const FlowConstants& k, Vector<Real> normal, Real tan_phi_wall, Mask smooth) const {
     const auto covered = weight > Real(min_kernel_sum);
     const Real inverse = select_or_zero(covered, Real(1.0) / weight);
     Real p_wall = p * inverse;
     if (k.numerics.tension_cutoff) p_wall = max(p_wall, Real(0.0));
-    const Real p_mean = p_soil * inverse, factor(yield_factor(k.rheology.shear_rate));
-    const auto yield = [&](Real at) HWY_ATTR { return factor * yield_stress(c * inverse, tan_phi * inverse, at); };
-    const Real growth = deviator_growth(magnitude(t) * inverse, p_wall, p_mean, yield(p_wall), yield(p_mean));
-    const Real share = inverse * select(rough, growth, Real(1.0));
+    const Real p_mean = p_soil * inverse, tan_phi_soil = tan_phi * inverse;
+    const auto yield = [&](Real tan, Real at) HWY_ATTR {
+      return Real(yield_factor(k.rheology.shear_rate)) * yield_stress(c * inverse, tan, at);
+    };
+    const Real share =
+        inverse * deviator_growth(magnitude(t) * inverse, p_wall, p_mean,
+                                  yield(min(tan_phi_soil, tan_phi_wall), p_wall), yield(tan_phi_soil, p_mean));
     Symmetric<Real> s{fms(t.xx, share, p_wall), fms(t.yy, share, p_wall), t.xy * share};
     if (any(smooth)) s = select(smooth, mirrored(s, normal), s);
     return {s, p_wall, select_or_zero(covered, fma(q, inverse, Real(1.0)))};

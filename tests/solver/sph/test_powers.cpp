@@ -159,6 +159,7 @@ TEST(Powers, ArtificialViscosityOfTwoParticlesThatApproach) {
   k.numerics.kernel = KernelShape::wendland_c2;
   k.numerics.alpha = 0.3;
   k.numerics.beta = 0.7;
+  k.numerics.velocity_jump = VelocityJump::whole;
   Soil soil = two_particles(k);
   const double rho_1 = 1900, rho_2 = 2300, approach = 2.5;
   soil.rho = {rho_1, rho_2};

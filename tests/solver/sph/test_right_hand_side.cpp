@@ -134,7 +134,7 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     }
   }
   for (std::size_t q = 0; q < nw; ++q) {
-    double sum = 0, p = 0, p_soil = 0, txx = 0, tyy = 0, txy = 0, compression = 0;
+    double sum = 0, p = 0, p_soil = 0, txx = 0, tyy = 0, txy = 0, compression = 0, cohesion = 0, tan_phi = 0;
     for (std::size_t j = 0; j < n; ++j) {
       const double x = w.x[q] - s.x[j], y = w.y[q] - s.y[j], weight = W(std::hypot(x, y));
       const double g_r = k.g.x * x + k.g.y * y, rho0 = k.soils[static_cast<std::size_t>(s.material[j])].eos.rho0;
@@ -145,12 +145,25 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       txx += weight * (r.sxx[j] + r.p[j]);
       tyy += weight * (r.syy[j] + r.p[j]);
       txy += weight * r.sxy[j];
+      cohesion += weight * s.c[j];
+      tan_phi += weight * s.tan_phi[j];
     }
     if (sum == 0) continue;
     r.wall_p[q] = k.numerics.tension_cutoff ? std::max(p / sum, 0.0) : p / sum;
     r.wall_density_ratio[q] = compression / sum;
+    cohesion /= sum;
+    tan_phi /= sum;
+    const double factor = k.rheology.shear_rate == ShearRate::paper ? std::sqrt(3.0) : 1.0, tzz = -txx - tyy;
+    const double size = std::sqrt((txx * txx + tyy * tyy + tzz * tzz) / 2 + txy * txy) / sum, p_mean = p_soil / sum;
+    const double ratio = p_soil > 0 ? std::max(r.wall_p[q] / p_mean, 0.0) : 1.0;
+    const double tan_wall = k.boundaries[static_cast<std::size_t>(w.boundary[q])].tan_phi;
+    const double yield_soil = factor * (cohesion + tan_phi * std::max(p_mean, 0.0)),
+                 yield_wall = factor * (cohesion + std::min(tan_phi, tan_wall) * std::max(r.wall_p[q], 0.0));
     double growth = 1;
-    if (slip(q) == WallSlip::no_slip && p_soil > 0) growth = std::clamp(r.wall_p[q] * sum / p_soil, 0.0, 3.0);
+    if (size > yield_soil)
+      growth = (std::min(ratio * yield_soil, yield_wall) + std::min(ratio, 3.0) * (size - yield_soil)) / size;
+    else if (size > 0)
+      growth = std::min(ratio, yield_wall / size);
     double sxx = txx * growth / sum - r.wall_p[q], syy = tyy * growth / sum - r.wall_p[q], sxy = txy * growth / sum;
     if (slip(q) == WallSlip::free_slip) {  // in the axes of the normal and the tangent (-ny, nx), shear reversed
       const double c = w.nx[q], z = w.ny[q];

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "random_soil.hpp"
 #include "sph/wall-inl.hpp"
 
@@ -37,6 +39,8 @@ TEST(Wall, InterfaceYieldsAtTheSmallerAngleWithinOneSpacing) {
   EXPECT_DOUBLE_EQ(interface_tan_phi(0.5, 0.2, 0.11, 0.1), 0.5);
 }
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
 TEST(Wall, ExtrapolationIsExactForHydrostaticPressure) {
   // p = p0 - rho |g| y in the soil continues into the wall with the same slope.
   const Vector<double> g{0, -9.81}, wall{0.0, -0.05};
@@ -46,7 +50,7 @@ TEST(Wall, ExtrapolationIsExactForHydrostaticPressure) {
     sum.add(1.0 / (1.0 + dot(x, x)), {{-p, -p, 0}, p, 2000, 0, 1000, 0.5}, dot(g, wall - x), 1.0 / (50 * 50));
   }
   EXPECT_NEAR(sum.p / sum.weight, 5000 + 2000 * 9.81 * 0.05, 1e-9);
-  EXPECT_NEAR(sum.value(constants(0.1, {0, -9.81}, {}), {0, 1}, true, false).p, 5000 + 2000 * 9.81 * 0.05, 1e-9);
+  EXPECT_NEAR(sum.value(constants(0.1, {0, -9.81}, {}), {0, 1}, infinity, false).p, 5000 + 2000 * 9.81 * 0.05, 1e-9);
 }
 
 TEST(Wall, DeviatorGrowsWithThePressureUpToTheYieldStress) {
@@ -71,9 +75,11 @@ TEST(Wall, ShearAtTheWallIsTheYieldStressOfTheSoilThere) {
   auto sum = WallStressSum<double>::zero();
   for (const double p : {1000.0, 3000.0, 5000.0})
     sum.add(1.0, {{-p, -p, c + p * tan_phi}, p, 2000, 0, c, tan_phi}, 9.81 * 0.1, 1e-4);
-  const WallStress<double> wall = sum.value(constants(0.1, {0, -9.81}, {}), {0, 1}, true, false);
+  const WallStress<double> wall = sum.value(constants(0.1, {0, -9.81}, {}), {0, 1}, infinity, false);
   EXPECT_DOUBLE_EQ(wall.p, 3000 + 2000 * 9.81 * 0.1);
   EXPECT_NEAR(wall.s.xy, c + wall.p * tan_phi, 1e-9);
+  const WallStress<double> smoother = sum.value(constants(0.1, {0, -9.81}, {}), {0, 1}, 0.1, false);
+  EXPECT_NEAR(smoother.s.xy, c + wall.p * 0.1, 1e-9);
 }
 
 /// Soil sliding along a flat wall at 3 m/s under pressure; returns it evaluated.
