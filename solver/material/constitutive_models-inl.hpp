@@ -44,6 +44,13 @@ HWY_INLINE Real shear_rate(Deviator<Real> e, ShearRate norm) {
   return sqrt(Real(norm == ShearRate::paper ? 2.0 / 3.0 : 2.0) * double_dot(e));
 }
 
+/// Strength of a point.
+template <class Real>
+struct MohrCoulomb {
+  Real c;        ///< cohesion [Pa]
+  Real tan_phi;  ///< tangent of the friction angle [-]
+};
+
 /// tau_y = c + max(p, 0) tan(phi)                                          [Z20] Eq. 5
 template <class Real>
 HWY_INLINE Real yield_stress(Real c, Real tan_phi, Real p) {

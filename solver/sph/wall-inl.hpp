@@ -12,6 +12,7 @@
 
 #include <algorithm>
 
+#include "material/constitutive_models-inl.hpp"
 #include "math/tensor-inl.hpp"
 #include "sph/flow_constants.hpp"
 
@@ -48,12 +49,13 @@ struct WallPair {
   Real v_dot_r;       ///< [m/s times the unit of the distances]
 };
 
-/// A wall that is smoother than the soil is a thin interface layer with the wall's friction angle (after Desai 1984):
-/// soil nearer than `thickness` to the wall line yields at the smaller of both. Where several such walls are near, the
-/// smallest angle counts.
-template <class Real>
-HWY_INLINE Real interface_tan_phi(Real tan_phi, Real tan_phi_wall, Real d_i, Real thickness) {
-  return select(d_i < thickness, min(tan_phi, tan_phi_wall), tan_phi);
+/// A wall that is weaker than the soil is a thin interface layer with the wall's strength (after Desai 1984): soil in
+/// it yields at the smaller cohesion and at the smaller friction angle of both. Where several such walls are near, the
+/// smallest count.
+/// @param within  the soil is nearer to the wall line than the layer is thick
+template <class Real, class Mask>
+HWY_INLINE MohrCoulomb<Real> interface_strength(MohrCoulomb<Real> soil, MohrCoulomb<Real> wall, Mask within) {
+  return {select(within, min(soil.c, wall.c), soil.c), select(within, min(soil.tan_phi, wall.tan_phi), soil.tan_phi)};
 }
 /// [m]; wide enough to hold most of what the kernel sees from the wall: one row of particles at h = 1.2 dx, two at 1.5
 /// dx.
@@ -65,7 +67,7 @@ struct WallLaw {
   Real b_max;  ///< largest mirror ratio [-]
   Real unit;   ///< of the distances [m]
   bool only_approaching;
-  bool frictional;  ///< a boundary has a friction angle of its own
+  bool frictional;  ///< a boundary has a strength of its own
   Real thickness;   ///< of the interface layer [m]
 
   /// @param metres  unit of the distances [m]

@@ -31,10 +31,15 @@ TEST(Wall, SmoothWallKeepsTheTangentialVelocity) {
   EXPECT_EQ(rough.y, 1.4 * v.y);
 }
 
-TEST(Wall, InterfaceYieldsAtTheSmallerAngleWithinOneSpacing) {
-  EXPECT_DOUBLE_EQ(interface_tan_phi(0.5, 0.2, 0.09, 0.1), 0.2);
-  EXPECT_DOUBLE_EQ(interface_tan_phi(0.1, 0.2, 0.09, 0.1), 0.1);
-  EXPECT_DOUBLE_EQ(interface_tan_phi(0.5, 0.2, 0.11, 0.1), 0.5);
+TEST(Wall, InterfaceYieldsAtTheSmallerAngleAndTheSmallerCohesion) {
+  const MohrCoulomb<double> clay{5000, 0.2}, sand{100, 0.5};
+  const auto weaker = interface_strength(clay, sand, true), outside = interface_strength(clay, sand, false);
+  EXPECT_DOUBLE_EQ(weaker.c, 100);
+  EXPECT_DOUBLE_EQ(weaker.tan_phi, 0.2);
+  EXPECT_DOUBLE_EQ(interface_strength(sand, clay, true).c, 100);
+  EXPECT_DOUBLE_EQ(interface_strength(sand, clay, true).tan_phi, 0.2);
+  EXPECT_DOUBLE_EQ(outside.c, 5000);
+  EXPECT_DOUBLE_EQ(outside.tan_phi, 0.2);
 }
 
 TEST(Wall, ExtrapolationIsExactForHydrostaticPressure) {
