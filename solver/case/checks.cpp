@@ -97,9 +97,15 @@ void warn_of_open_ends(const Model& model, std::vector<Fault>& warnings) {
   };
   check_end(t.left_wall, t.bed.front(), "/terrain/left_end");
   check_end(t.right_wall, t.bed.back(), "/terrain/right_end");
-  if ((t.left_wall || t.right_wall) && bounding_box(model.slide).hi.y > t.wall_top)
-    warnings.push_back(
-        {"/terrain/wall_top_m", "is lower than the slide's highest point; soil may spill over the wall and is lost"});
+  const double highest = bounding_box(model.slide).hi.y;
+  const auto check_top = [&](bool walled, std::optional<double> own, const std::string& pointer) {
+    if (walled && highest > own.value_or(t.wall_top))
+      warnings.push_back({own ? pointer : "/terrain/wall_top_m",
+                          "is lower than the slide's highest point; soil may spill over the wall and is lost"});
+  };
+  check_top(t.left_wall, t.left_top, "/terrain/left_wall_top_m");
+  const bool said = t.left_wall && !t.left_top && !t.right_top;  // one key, one warning
+  check_top(t.right_wall && !said, t.right_top, "/terrain/right_wall_top_m");
 }
 
 /// Keys that the choices of sampler and truncation leave unused. A resolved case names every key, so only a value other

@@ -40,6 +40,8 @@ void use_local_coordinates(Case& c) {
   m.terrain.origin = origin;
   move(m.terrain.bed, origin);
   m.terrain.wall_top = local(m.terrain.wall_top, origin.y);
+  for (std::optional<double>* top : {&m.terrain.left_top, &m.terrain.right_top})
+    if (*top) *top = local(**top, origin.y);
   m.terrain.run_out.from = local(m.terrain.run_out.from, origin.x);
   for (Boundary& boundary : m.boundaries) move(boundary.line.vertices, origin);
   for (SlidePart& part : m.slide) move(part.outline, origin);

@@ -169,23 +169,38 @@ void read_run_out(ObjectReader& in, Terrain& t, const SlideInput& slide, double 
              "user", "0.1 m or 1.5 particle spacings, whichever is more"});
 }
 
+/// The top of an end wall that has one of its own.
+void read_own_top(ObjectReader& in, std::string_view key, const char* side, bool stands, std::optional<double>& top) {
+  in.optional_number(
+      key, top, coordinate,
+      {std::string("Height y of the top of the ") + side + " end wall; above the bed there. Open beds only.", "site",
+       "wall_top_m"});
+  if (top && !stands) in.fault(key, std::string("has no meaning: no wall stands on the ") + side + " end");
+}
+
 /// By default 5 particle spacings over the slide and over the walled ends of the bed.
-void read_wall_top(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
+void read_wall_tops(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
   const double highest = slide.parts.empty() ? coordinate.lo : bounding_box(slide.parts).hi.y;
   const double left = t.left_wall && !t.bed.empty() ? t.bed.front().y : coordinate.lo;
   const double right = t.right_wall && !t.bed.empty() ? t.bed.back().y : coordinate.lo;
-  const double bed = std::max(left, right);
-  t.wall_top = std::clamp(std::max(highest, bed) + 5.0 * dx, coordinate.lo, coordinate.hi);
+  t.wall_top = std::clamp(std::max({highest, left, right}) + 5.0 * dx, coordinate.lo, coordinate.hi);
   in.number("wall_top_m", t.wall_top, coordinate,
             {"Height y of the top of the end walls; above the bed there. Open beds only.", "site",
              "5 particle spacings over the highest point of slide and walled bed ends"});
-  if (t.wall_top <= bed && in.faults().none_under(in.pointer("wall_top_m")))
-    in.fault("wall_top_m", to_text(t.wall_top) + " does not lie above the bed at the walled end, y = " + to_text(bed));
+  read_own_top(in, "left_wall_top_m", "left", t.left_wall, t.left_top);
+  read_own_top(in, "right_wall_top_m", "right", t.right_wall, t.right_top);
+  const auto check = [&](std::string_view key, double top, double bed) {
+    if (top <= bed && in.faults().none_under(in.pointer(key)))
+      in.fault(key, to_text(top) + " does not lie above the bed at the walled end, y = " + to_text(bed));
+  };
+  check("wall_top_m", t.wall_top, std::max(t.left_top ? coordinate.lo : left, t.right_top ? coordinate.lo : right));
+  if (t.left_top) check("left_wall_top_m", *t.left_top, left);
+  if (t.right_top) check("right_wall_top_m", *t.right_top, right);
 }
 
 void read_ends(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx) {
   if (t.closed) {
-    for (const char* key : {"left_end", "right_end", "wall_top_m"})
+    for (const char* key : {"left_end", "right_end", "wall_top_m", "left_wall_top_m", "right_wall_top_m"})
       if (in.find(key) != nullptr) in.fault(key, "has no meaning for a closed bed");
     return;
   }
@@ -197,7 +212,7 @@ void read_ends(ObjectReader& in, Terrain& t, const SlideInput& slide, double dx)
   in.choice("right_end", t.right_wall, ends,
             {"What stands on the bed's last vertex: a vertical wall, or nothing. Open beds only.", "site",
              "open, or wall if the slide goes to the left"});
-  read_wall_top(in, t, slide, dx);
+  read_wall_tops(in, t, slide, dx);
 }
 
 /// The bed that the slide's surfaces leave, or nothing and a fault.

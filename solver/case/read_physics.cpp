@@ -208,12 +208,18 @@ void read_walls(ObjectReader& in, Walls& w, Boundary& bed) {
        "a pile chattering.",
        "[Z20] section 2.1 for approaching"});
   in.choice("slip", bed.slip, slips,
-            {"no_slip: velocity vanishes at the wall; friction: the wall's own friction angle; free_slip: no shear.",
-             "Takeda 1994, Morris 1997"});
+            {"no_slip: velocity vanishes at the wall; friction: soil along the wall yields at the smaller "
+             "friction angle and the smaller cohesion of wall and soil; free_slip: no shear.",
+             "Takeda 1994, Morris 1997; Desai 1984 for friction"});
   std::optional<double> angle;
   in.optional_number(
       "friction_angle_deg", angle, friction_angle,
       {"Friction angle of the wall; needed by slip friction, unused otherwise.", "interface shear test", "none"});
+  in.optional_number(
+      "cohesion_Pa", bed.c, {"Pa", 0.0, 1e9},
+      {"Cohesion of the wall with slip friction, unused otherwise; without it the soil's cohesion acts on "
+       "the wall.",
+       "interface shear test", "the soil's"});
   if (bed.slip == WallSlip::friction && in.find("friction_angle_deg") == nullptr)
     in.fault("friction_angle_deg",
              "is missing: slip \"friction\" needs the wall's angle; " + friction_angle.describe());

@@ -37,6 +37,8 @@ const Usual cohesion{"cohesion_Pa",
                      5e6,
                      "0, or 50 Pa to 5 MPa",
                      {{0.0, 50.0, "a cohesion in kPa is given as cohesion_kPa"}}};
+const Usual wall_cohesion{
+    "cohesion_Pa", "Pa", 50.0, 5e6, "0, or 50 Pa to 5 MPa", {{0.0, 50.0, "a cohesion in kPa is multiplied by 1000"}}};
 const Usual friction_angle{"friction_angle_deg",
                            "deg",
                            2.0,
@@ -90,6 +92,8 @@ void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings) {
       warn(grain_density, m.mu_i->rho_s, section + "/mu_i", warnings);
     }
   }
+  for (const Boundary& b : model.boundaries)
+    if (b.c) warn(wall_cohesion, *b.c, "/walls", warnings);
   if (model.rheology.G) warn(shear_modulus, *model.rheology.G, "/rheology", warnings);
 }
 

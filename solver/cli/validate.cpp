@@ -84,9 +84,9 @@ Json to_json(const GroundReport& r, const Terrain& terrain) {
               {"notches", {{"filled", r.fitted.notches}, {"deepest_m", r.fitted.deepest_notch}}}};
   if (terrain.closed) return out;
   out["left_end"] =
-      end_json(terrain.left_wall, terrain.bed.front() + terrain.origin, terrain.wall_top + terrain.origin.y);
+      end_json(terrain.left_wall, terrain.bed.front() + terrain.origin, terrain.left_wall_top() + terrain.origin.y);
   out["right_end"] =
-      end_json(terrain.right_wall, terrain.bed.back() + terrain.origin, terrain.wall_top + terrain.origin.y);
+      end_json(terrain.right_wall, terrain.bed.back() + terrain.origin, terrain.right_wall_top() + terrain.origin.y);
   return out;
 }
 
@@ -184,8 +184,8 @@ void print_ground(const GroundReport& r, const Model& model) {
     std::printf("                   %d %s narrower than a particle filled, at most %.2g m deep\n", f.notches,
                 f.notches == 1 ? "notch" : "notches", f.deepest_notch);
   const Terrain& t = model.terrain;
-  if (!t.closed) print_end("left end", t.left_wall, t.bed.front() + t.origin, t.wall_top + t.origin.y);
-  if (!t.closed) print_end("right end", t.right_wall, t.bed.back() + t.origin, t.wall_top + t.origin.y);
+  if (!t.closed) print_end("left end", t.left_wall, t.bed.front() + t.origin, t.left_wall_top() + t.origin.y);
+  if (!t.closed) print_end("right end", t.right_wall, t.bed.back() + t.origin, t.right_wall_top() + t.origin.y);
   std::printf("slide              x = %.10g to %.10g m, y = %.10g to %.10g m, at most %.3g m thick (%.3g spacings)\n",
               r.slide.lo.x, r.slide.hi.x, r.slide.lo.y, r.slide.hi.y, r.thickness, r.thickness / model.dx);
 }

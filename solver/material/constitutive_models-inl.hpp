@@ -47,6 +47,13 @@ HWY_INLINE Real shear_rate(Deviator<Real> e, ShearRate norm) {
 /// On tau_y: the norm of Eq. 7 as printed shears at sqrt(3) tau_y, and the elastic law follows it.
 inline double yield_factor(ShearRate norm) { return norm == ShearRate::paper ? std::numbers::sqrt3 : 1.0; }
 
+/// Strength of a point.
+template <class Real>
+struct MohrCoulomb {
+  Real c;        ///< cohesion [Pa]
+  Real tan_phi;  ///< tangent of the friction angle [-]
+};
+
 /// tau_y = c + max(p, 0) tan(phi)                                          [Z20] Eq. 5
 template <class Real>
 HWY_INLINE Real yield_stress(Real c, Real tan_phi, Real p) {

@@ -96,8 +96,9 @@ Polyline offset_into_rock(const Polyline& line, double offset) {
 Polyline ground_line(const Terrain& terrain) {
   Polyline line{terrain.bed, terrain.closed};
   if (!terrain.closed && !terrain.bed.empty()) {
-    if (terrain.left_wall) line.vertices.insert(line.vertices.begin(), {terrain.bed.front().x, terrain.wall_top});
-    if (terrain.right_wall) line.vertices.push_back({terrain.bed.back().x, terrain.wall_top});
+    if (terrain.left_wall)
+      line.vertices.insert(line.vertices.begin(), {terrain.bed.front().x, terrain.left_wall_top()});
+    if (terrain.right_wall) line.vertices.push_back({terrain.bed.back().x, terrain.right_wall_top()});
   }
   return line;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The shape of the problem as a person describes it: terrain, boundaries and slide.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,15 @@ struct Terrain {
   bool closed = false;      ///< the bed is a ring
   bool left_wall = true;    ///< a vertical wall stands on the first bed vertex
   bool right_wall = false;  ///< a vertical wall stands on the last bed vertex
-  double wall_top = 0.0;    ///< y of the top of the end walls [m]
+  double wall_top = 0.0;    ///< y of the top of an end wall without a top of its own [m]
   RunOutAxis run_out;
   double front_thickness = 0.1;  ///< of the soil at the front at fixed thickness [m], > 0
   Vec2 origin = {};  ///< what was taken off the coordinates of the case; what is published has it added again [m]
+  std::optional<double> left_top = {};   ///< y of the top of the left end wall; unset: wall_top [m]
+  std::optional<double> right_top = {};  ///< y of the top of the right end wall; unset: wall_top [m]
+
+  double left_wall_top() const { return left_top.value_or(wall_top); }
+  double right_wall_top() const { return right_top.value_or(wall_top); }
   bool operator==(const Terrain&) const = default;
 };
 
@@ -61,7 +67,8 @@ struct Boundary {
   std::string name = "bed";
   Polyline line;
   WallSlip slip = WallSlip::no_slip;
-  double phi = 0.0;  ///< friction angle of the wall, used with WallSlip::friction [rad], in [0, pi/2)
+  double phi = 0.0;              ///< friction angle of the wall, used with WallSlip::friction [rad], in [0, pi/2)
+  std::optional<double> c = {};  ///< cohesion of the wall, used with WallSlip::friction [Pa], >= 0; unset: the soil's
   bool operator==(const Boundary&) const = default;
 };
 

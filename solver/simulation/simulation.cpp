@@ -15,8 +15,8 @@ namespace {
 
 /// Beyond an open end of the bed, or over the wall of a walled one.
 bool departed(const Terrain& terrain, Vec2 x) {
-  if (x.x < terrain.bed.front().x) return !terrain.left_wall || x.y > terrain.wall_top;
-  if (x.x > terrain.bed.back().x) return !terrain.right_wall || x.y > terrain.wall_top;
+  if (x.x < terrain.bed.front().x) return !terrain.left_wall || x.y > terrain.left_wall_top();
+  if (x.x > terrain.bed.back().x) return !terrain.right_wall || x.y > terrain.right_wall_top();
   return false;
 }
 

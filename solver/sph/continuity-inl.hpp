@@ -118,13 +118,13 @@ HWY_INLINE Real yielded_viscosity(const Point& at, Real p, Real gamma_dot) {
 }
 
 /// Pressure, stress, and the rates of density and elastic stress.                [Z20] Eqs. 1, 3-10
-/// @param tan_phi  of the soil, or of the wall that it slides along
-/// @param at       the point, or the points of a cluster: q(), c(), constant(get) of its ConstitutiveParameters;
-///                 elastic() as the model needs it; set_strain_rate(e), set_stress(s, p), set_rates(drho, gamma_dot);
-///                 set_powers(f), which calls f(volume) for StressPowers where an evaluation measures them
+/// @param strength  of the soil, or of the wall that it slides along
+/// @param at        the point, or the points of a cluster: q(), constant(get) of its ConstitutiveParameters; elastic()
+///                  as the model needs it; set_strain_rate(e), set_stress(s, p), set_rates(drho, gamma_dot);
+///                  set_powers(f), which calls f(volume) for StressPowers where an evaluation measures them
 template <class Real, class Model, class Point>
-HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const FlowRates<Real>& rates, Real tan_phi,
-                             Point&& at) {
+HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const FlowRates<Real>& rates,
+                             const MohrCoulomb<Real>& strength, Point&& at) {
   using Parameters = const ConstitutiveParameters&;
   const Real q = at.q();
   Real p = pressure(at.constant([](Parameters soil) { return soil.eos.B; }), q);
@@ -136,8 +136,8 @@ HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const F
                                .two_spin = two_spin(rates.L),
                                .gamma_dot = gamma_dot,
                                .p = p,
-                               .c = at.c(),
-                               .tan_phi = tan_phi,
+                               .c = strength.c,
+                               .tan_phi = strength.tan_phi,
                                .eta = yielded_viscosity(at, p, gamma_dot),
                                .two_G = at.constant([](Parameters soil) { return 2.0 * soil.G; })};
   const Deviator<Real> t = model.stress(state, at.elastic());

@@ -30,7 +30,9 @@ std::vector<WallFriction> wall_friction(std::span<const Boundary> boundaries) {
   std::vector<WallFriction> walls;
   for (const Boundary& b : boundaries) {
     walls.push_back({.slip = b.slip});
-    if (b.slip == WallSlip::friction) walls.back().tan_phi = std::tan(b.phi);
+    if (b.slip != WallSlip::friction) continue;
+    walls.back().tan_phi = std::tan(b.phi);
+    if (b.c) walls.back().c = *b.c;
   }
   return walls;
 }

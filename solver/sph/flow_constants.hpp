@@ -25,6 +25,7 @@ struct ConstitutiveParameters {
 struct WallFriction {
   WallSlip slip = WallSlip::no_slip;
   double tan_phi = std::numeric_limits<double>::infinity();  ///< with WallSlip::friction; otherwise unbounded [-]
+  double c = std::numeric_limits<double>::infinity();        ///< cohesion, where the boundary has its own [Pa]
 };
 
 /// Constants of a run that every pair sees.

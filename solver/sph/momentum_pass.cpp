@@ -40,8 +40,8 @@ HWY_ATTR void wall_stress_loop(PackedFlow& f, const FlowConstants& k, WallPartic
       sum.add(pair.kernel, {tensor_of(soil.stress, pair.j), p, rho, q, cohesion, tan_phi}, dot(g, pair.r), per_c2);
     });
     const Lanes slip = load(f.walls.slip.data() + i);
-    const WallStress<Lanes> wall =
-        sum.value(k, normal, load(f.walls.tan_phi.data() + i), slip == Lanes(slip_code(WallSlip::free_slip)));
+    const WallStress<Lanes> wall = sum.value(k, normal, {load(f.walls.c.data() + i), load(f.walls.tan_phi.data() + i)},
+                                             slip == Lanes(slip_code(WallSlip::free_slip)));
     Lanes sxx, syy, sxy, depth;
     load_groups(f.walls.stress.data() + 4 * i, sxx, syy, sxy, depth);
     store_groups(wall.s.xx, wall.s.yy, wall.s.xy, depth, f.walls.stress.data() + 4 * i, count);

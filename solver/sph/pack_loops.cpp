@@ -201,6 +201,7 @@ void pack_walls(PackedFlow& f, const FlowConstants& k, const WallParticles& wall
     const WallFriction& boundary = k.boundaries[static_cast<std::size_t>(walls.boundary[w])];
     f.walls.slip[w] = slip_code(boundary.slip);
     f.walls.tan_phi[w] = static_cast<float>(boundary.tan_phi);
+    f.walls.c[w] = static_cast<float>(boundary.c);
   }
 }
 

@@ -38,6 +38,7 @@ void PackedWalls::resize(std::size_t n) {
   stress.assign(4 * (n + padding), 1.0f);  // a depth, that one can divide by
   slip.assign(n + padding, 0.0f);
   tan_phi.assign(n + padding, 0.0f);
+  c.assign(n + padding, 0.0f);
 }
 
 std::vector<std::uint32_t> clusters(const CellList& cells, std::size_t lanes) {

@@ -59,6 +59,7 @@ struct PackedWalls {
   std::vector<float> stress;   ///< sxx, syy, sxy [Pa], depth [m]
   std::vector<float> slip;     ///< WallSlip as a number, not grouped
   std::vector<float> tan_phi;  ///< of the wall's friction angle, infinite where it has none [-], not grouped
+  std::vector<float> c;        ///< of the wall's cohesion, infinite where it has none [Pa], not grouped
   void resize(std::size_t n);
 };
 

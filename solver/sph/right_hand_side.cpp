@@ -120,7 +120,7 @@ struct Passes {
     const auto dynamic = [&](std::size_t j) { return dynamic_density(q(j), g_per_c2, vector(soil.position(j))); };
     const double dynamic_i = dynamic(i);
     auto sums = FlowRateSums<double>::zero();
-    double tan_phi = soil.tan_phi[i];
+    MohrCoulomb<double> strength{soil.c[i], soil.tan_phi[i]};
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double VF = volume(j) * minus_F(r2);
       sums.add(VF, density(j), v_i - vector(soil.velocity(j)), r, by_mass);
@@ -131,10 +131,11 @@ struct Passes {
       const WallPair<double> w = wall_law.pair(r, v_i, wall_particle(j));
       if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
       sums.add(walls.volume * minus_F(r2), rho_i, w.v_ij, r, by_mass);
-      tan_phi = interface_tan_phi(tan_phi, boundary(j).tan_phi, w.distance, wall_law.thickness);
+      const MohrCoulomb<double> of_wall{boundary(j).c, boundary(j).tan_phi};
+      strength = interface_strength(strength, of_wall, w.distance < wall_law.thickness);
     });
     const double to_diffusion = 2.0 * k.numerics.delta * k.h * k.c_s * sigma;
-    update_point(k, Model(k.rheology), sums.rates(-sigma, to_diffusion, by_mass, rho_i), tan_phi,
+    update_point(k, Model(k.rheology), sums.rates(-sigma, to_diffusion, by_mass, rho_i), strength,
                  SoilPoint{k, soil, powers, i, &strain[i]});
   }
 
@@ -146,7 +147,7 @@ struct Passes {
     });
     const WallFriction& friction = boundary(w);
     const WallStress<double> wall =
-        sum.value(k, vector(walls.normal(w)), friction.tan_phi, friction.slip == WallSlip::free_slip);
+        sum.value(k, vector(walls.normal(w)), {friction.c, friction.tan_phi}, friction.slip == WallSlip::free_slip);
     walls.p[w] = wall.p;
     walls.density_ratio[w] = wall.density_ratio;
     walls.sxx[w] = wall.s.xx;

@@ -99,7 +99,7 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
     load_groups(f.soil.motion.data() + 4 * i, x.x, x.y, v.x, v.y);
     load_groups(f.soil.density.data() + 4 * i, volume, q, rho, material);
     const ClusterPoint point{f, k, soil, ahead, keep, measure, i, count, volume};
-    Lanes tan_phi = point.tan_phi();
+    MohrCoulomb<Lanes> strength{point.c(), point.tan_phi()};
     auto sums = FlowRateSums<Lanes>::zero();
     const auto add_soil = [&](const Pair& pair) HWY_ATTR {
       const float* HWY_RESTRICT motion = f.soil.motion.data() + 4 * pair.j;
@@ -118,13 +118,13 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
       if (wall.only_approaching) acts = acts & (w.v_dot_r < Lanes(0.0));
       sums.add(select_or_zero(acts, volume_w * pair.kernel), rho, w.v_ij, pair.r, ByMass);
       if (wall.frictional) {
-        const Lanes of_wall(f.walls.tan_phi[pair.j]);
-        tan_phi = select(acts, interface_tan_phi(tan_phi, of_wall, w.distance, wall.thickness), tan_phi);
+        const MohrCoulomb<Lanes> of_wall{Lanes(f.walls.c[pair.j]), Lanes(f.walls.tan_phi[pair.j])};
+        strength = interface_strength(strength, of_wall, acts & (w.distance < wall.thickness));
       }
     };
     for_neighbours<true>(x, f.soil.motion.data(), neighbours(f.soil_soil, c), minus_F, add_soil);
     for_neighbours<false>(x, f.walls.place.data(), neighbours(f.soil_wall, c), minus_F, add_wall);
-    update_point(k, model, sums.rates(to_L, to_diffusion, ByMass, rho), tan_phi, point);
+    update_point(k, model, sums.rates(to_L, to_diffusion, ByMass, rho), strength, point);
   }
 }
 

@@ -49,12 +49,13 @@ struct WallPair {
   Real v_dot_r;       ///< [m/s times the unit of the distances]
 };
 
-/// A wall that is smoother than the soil is a thin interface layer with the wall's friction angle (after Desai 1984):
-/// soil nearer than `thickness` to the wall line yields at the smaller of both. Where several such walls are near, the
-/// smallest angle counts.
-template <class Real>
-HWY_INLINE Real interface_tan_phi(Real tan_phi, Real tan_phi_wall, Real d_i, Real thickness) {
-  return select(d_i < thickness, min(tan_phi, tan_phi_wall), tan_phi);
+/// A wall that is weaker than the soil is a thin interface layer with the wall's strength (after Desai 1984): soil in
+/// it yields at the smaller cohesion and at the smaller friction angle of both. Where several such walls are near, the
+/// smallest count.
+/// @param within  the soil is nearer to the wall line than the layer is thick
+template <class Real, class Mask>
+HWY_INLINE MohrCoulomb<Real> interface_strength(MohrCoulomb<Real> soil, MohrCoulomb<Real> wall, Mask within) {
+  return {select(within, min(soil.c, wall.c), soil.c), select(within, min(soil.tan_phi, wall.tan_phi), soil.tan_phi)};
 }
 /// [m]; wide enough to hold most of what the kernel sees from the wall: one row of particles at h = 1.2 dx, two at 1.5
 /// dx.
@@ -66,7 +67,7 @@ struct WallLaw {
   Real b_max;  ///< largest mirror ratio [-]
   Real unit;   ///< of the distances [m]
   bool only_approaching;
-  bool frictional;  ///< a boundary has a friction angle of its own
+  bool frictional;  ///< a boundary has a strength of its own
   Real thickness;   ///< of the interface layer [m]
 
   /// @param metres  unit of the distances [m]
@@ -86,23 +87,24 @@ struct WallLaw {
   }
 };
 
-/// The most that a viscous stress may grow on its way to a wall particle [-].
-inline constexpr double max_viscous_growth = 3.0;
+/// The most that the deviatoric stress may grow on its way to a wall particle [-]: that of a single row of soil.
+inline constexpr double max_deviator_growth = 6.0;
 
 /// By how much the soil's deviatoric stress grows on its way to a wall particle. Under its own weight a layer carries a
 /// deviator in proportion to its depth, as it carries pressure; extrapolated as a constant its shear would lack that of
 /// half a support, and a layer of cohesionless soil would slide at 23 instead of 25 degrees. So it grows as the
-/// pressure does, up to the yield stress at the wall particle; what exceeds the yield stress in the soil is viscous and
-/// grows at most threefold.
+/// pressure does, up to the yield stress at the wall particle, and with it what exceeds the yield stress in the soil,
+/// which is viscous.
 /// @param size    of the soil's deviator there, sqrt(t:t/2) [Pa]
 /// @param p_wall  extrapolated pressure [Pa]
 /// @param p_soil  the soil's, interpolated without its hydrostatic part [Pa]
 /// @param yield_wall, yield_soil  yield stress at these pressures [Pa]
 template <class Real>
 HWY_INLINE Real deviator_growth(Real size, Real p_wall, Real p_soil, Real yield_wall, Real yield_soil) {
-  const Real growth = select(p_soil > Real(0.0), max(p_wall / p_soil, Real(0.0)), Real(1.0));
+  const Real ratio = min(max(p_wall / p_soil, Real(0.0)), Real(max_deviator_growth));
+  const Real growth = select(p_soil > Real(0.0), ratio, Real(1.0));
   const Real viscous = max(size - yield_soil, Real(0.0)), plastic = size - viscous;
-  const Real at_wall = fma(min(growth, Real(max_viscous_growth)), viscous, min(growth * plastic, yield_wall));
+  const Real at_wall = fma(growth, viscous, min(growth * plastic, yield_wall));
   return select(size > Real(0.0), at_wall / size, Real(1.0));
 }
 
@@ -150,22 +152,23 @@ struct WallStressSum {
     t = fma(W, Deviator<Real>{f.s.xx + f.p, f.s.yy + f.p, f.s.xy}, t);
   }
 
-  /// @param tan_phi_wall  of the wall's friction angle, infinite where it has none; with it the soil at the wall yields
-  ///                      at the smaller of both
-  /// @param smooth        where the boundary has WallSlip::free_slip
+  /// @param of_wall  strength of the wall, infinite where it has none; the soil there yields at the smaller of both
+  /// @param smooth   where the boundary has WallSlip::free_slip
   template <class Mask>
-  HWY_INLINE WallStress<Real> value(const FlowConstants& k, Vector<Real> normal, Real tan_phi_wall, Mask smooth) const {
+  HWY_INLINE WallStress<Real> value(const FlowConstants& k, Vector<Real> normal, MohrCoulomb<Real> of_wall,
+                                    Mask smooth) const {
     const auto covered = weight > Real(min_kernel_sum);
     const Real inverse = select_or_zero(covered, Real(1.0) / weight);
     Real p_wall = p * inverse;
     if (k.numerics.tension_cutoff) p_wall = max(p_wall, Real(0.0));
-    const Real p_mean = p_soil * inverse, tan_phi_soil = tan_phi * inverse;
-    const auto yield = [&](Real tan, Real at) HWY_ATTR {
-      return Real(yield_factor(k.rheology.shear_rate)) * yield_stress(c * inverse, tan, at);
+    const Real p_mean = p_soil * inverse;
+    const MohrCoulomb<Real> soil{c * inverse, tan_phi * inverse};
+    const MohrCoulomb<Real> weaker{min(soil.c, of_wall.c), min(soil.tan_phi, of_wall.tan_phi)};
+    const auto yield = [&](MohrCoulomb<Real> of, Real at) HWY_ATTR {
+      return Real(yield_factor(k.rheology.shear_rate)) * yield_stress(of.c, of.tan_phi, at);
     };
-    const Real share =
-        inverse * deviator_growth(magnitude(t) * inverse, p_wall, p_mean,
-                                  yield(min(tan_phi_soil, tan_phi_wall), p_wall), yield(tan_phi_soil, p_mean));
+    const Real size = magnitude(t) * inverse;
+    const Real share = inverse * deviator_growth(size, p_wall, p_mean, yield(weaker, p_wall), yield(soil, p_mean));
     Symmetric<Real> s{fms(t.xx, share, p_wall), fms(t.yy, share, p_wall), t.xy * share};
     if (any(smooth)) s = select(smooth, mirrored(s, normal), s);
     return {s, p_wall, select_or_zero(covered, fma(q, inverse, Real(1.0)))};

@@ -111,6 +111,11 @@ TEST(Warnings, SoilThatStandsByItsCohesionDoesNotLeak) {
 TEST(Warnings, AWallLowerThanTheSlide) {
   EXPECT_EQ(test::load(with("/terrain/wall_top_m", 7)).warnings.size(), 1u);
   EXPECT_EQ(test::load(with("/terrain/wall_top_m", 8)).warnings.size(), 0u);
+  const Json walled = with("/terrain/right_end", "wall");
+  EXPECT_EQ(test::load(with("/terrain/wall_top_m", 7, walled)).warnings.size(), 1u) << "one key, one warning";
+  const auto warnings = test::load(with("/terrain/right_wall_top_m", 7, walled)).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].pointer, "/terrain/right_wall_top_m");
 }
 
 TEST(Warnings, AHypercubeThatIsToStopEarly) {

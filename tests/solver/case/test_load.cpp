@@ -41,6 +41,17 @@ TEST(LoadCase, ConvertsDegreesToRadians) {
   EXPECT_NEAR(c.model.boundaries.at(0).phi, std::numbers::pi / 12, 1e-15);
 }
 
+TEST(LoadCase, AWallHasTheSoilsCohesionUnlessItHasItsOwn) {
+  Json document = with("/walls/slip", "friction", with("/walls/friction_angle_deg", 15));
+  EXPECT_FALSE(test::load(document).value.model.boundaries.at(0).c);
+  const LoadedCase own = test::load(with("/walls/cohesion_Pa", 0, document));
+  EXPECT_EQ(own.value.model.boundaries.at(0).c, 0.0);
+  EXPECT_NE(own.hash, test::load(document).hash);
+  const LoadedCase slip = test::load(with("/walls/cohesion_Pa", 5, document));
+  ASSERT_FALSE(slip.warnings.empty());
+  EXPECT_EQ(slip.warnings.back().pointer, "/walls/cohesion_Pa");
+}
+
 TEST(LoadCase, TakesTheUnitsOfALaboratory) {
   Json document = minimal();
   document["material"] = {{"unit_weight_kN_m3", 19.62}, {"friction_angle_deg", 30}, {"cohesion_kPa", 5}};
@@ -242,6 +253,37 @@ TEST(LoadCase, DerivedDefaultsOfTheTerrain) {
   EXPECT_EQ(test::load(with("/particle_spacing_m", 0.05)).value.model.terrain.front_thickness, 0.1);
   const Terrain high = test::load(with("/terrain/bed_m", {{-9, 20}, {0, 5}, {10, 0}, {40, 0}})).value.model.terrain;
   EXPECT_EQ(high.wall_top, 20.0 + 5 * 0.5) << "over the bed where a wall stands";
+}
+
+TEST(LoadCase, EndWallsMayHaveTopsOfTheirOwn) {
+  const Json walled = with("/terrain/right_end", "wall");
+  const auto terrain = [](const Json& document) { return test::load(document).value.model.terrain; };
+  const Terrain both = terrain(with("/terrain/wall_top_m", 12, walled));
+  EXPECT_EQ(both.left_wall_top(), 12.0);
+  EXPECT_EQ(both.right_wall_top(), 12.0);
+  const Json low = with("/terrain/right_wall_top_m", 1.5, walled);
+  EXPECT_EQ(terrain(low).left_wall_top(), 8.0 + 5 * 0.5);
+  EXPECT_EQ(terrain(low).right_wall_top(), 1.5);
+  EXPECT_EQ(terrain(with("/terrain/left_wall_top_m", 9, low)).left_wall_top(), 9.0);
+  const std::vector<Vec2> line = test::load(low).value.model.boundaries.at(0).line.vertices;
+  EXPECT_EQ(line.front().y, 8.0 + 5 * 0.5);
+  EXPECT_EQ(line.back().y, 1.5);
+  const auto fault = [](const Json& document) {
+    try {
+      test::load(document);
+    } catch (const ConfigError& e) {
+      return e.faults.size() == 1 ? e.faults[0].pointer + ": " + e.faults[0].message : std::string("several");
+    }
+    return std::string();
+  };
+  EXPECT_EQ(fault(with("/terrain/right_wall_top_m", 0, walled)),
+            "/terrain/right_wall_top_m: 0 does not lie above the bed at the walled end, y = 0");
+  EXPECT_EQ(fault(with("/terrain/left_wall_top_m", 5, walled)),
+            "/terrain/left_wall_top_m: 5 does not lie above the bed at the walled end, y = 5");
+  EXPECT_EQ(fault(with("/terrain/right_wall_top_m", 9)),
+            "/terrain/right_wall_top_m: has no meaning: no wall stands on the right end");
+  EXPECT_EQ(fault(with("/terrain/wall_top_m", 4, with("/terrain/left_wall_top_m", 9, walled))), "")
+      << "wall_top_m is then the right wall's";
 }
 
 TEST(LoadCase, ClosedBedsRunCounterClockwiseWithoutRepetition) {

@@ -11,6 +11,9 @@ using test::minimal;
 Json slope() {
   Json document = minimal();
   document["terrain"]["wall_top_m"] = 11;
+  document["terrain"]["left_wall_top_m"] = 12;
+  document["terrain"]["right_end"] = "wall";
+  document["terrain"]["right_wall_top_m"] = 9;
   document["terrain"]["measured_from_m"] = 1.25;
   document["random_field"] = {
       {"correlation_length_m", 2}, {"log_stdev", 0.1}, {"domain_m", {{"x", {-1, 12}}, {"y", {0, 8.5}}}}};
@@ -25,7 +28,8 @@ Json moved(Json document, Vec2 by) {
   Json& terrain = document["terrain"];
   move(terrain["bed_m"], by);
   for (Json& part : document["slide"]["outlines"]) move(part["outline_m"], by);
-  terrain["wall_top_m"] = terrain["wall_top_m"].get<double>() + by.y;
+  for (const char* top : {"wall_top_m", "left_wall_top_m", "right_wall_top_m"})
+    terrain[top] = terrain[top].get<double>() + by.y;
   terrain["measured_from_m"] = terrain["measured_from_m"].get<double>() + by.x;
   Json& domain = document["random_field"]["domain_m"];
   for (Json& x : domain["x"]) x = x.get<double>() + by.x;

@@ -124,6 +124,10 @@ class Run(Directory):
         self.assert_says("left_terrain", "doubtful", case=path)
         self.assertGreater(self.result["left_domain"], 0)
         self.assertEqual(self.result["penetrated"], 0)
+        self.verdict("terrain.left_wall_top_m=30", case=path)
+        self.assertEqual(self.result["left_domain"], 0, "it spilled over the left wall")
+        self.verdict("terrain.left_wall_top_m=30", "terrain.right_wall_top_m=1", case=path)
+        self.assertGreater(self.result["left_domain"], 0, "over the right wall")
 
     def test_a_loose_rule_of_rest_ends_a_run_at_rest_that_is_doubtful(self):
         rule = 'time.stop_at_rest={"speed_m_s": 2.5, "hold_s": 0.1}'

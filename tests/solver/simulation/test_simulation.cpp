@@ -187,6 +187,38 @@ TEST(Simulation, ABlockOnASmootherWallSlidesAtTheWallsFriction) {
   EXPECT_LT(speed_after(WallSlip::no_slip, 0), 0.05);
 }
 
+TEST(Simulation, ASlabIsHeldByTheWallsCohesionUpToItsWeightAlongTheSlope) {
+  // theta = 30 deg, H = 0.5 m: the wall must carry rho g H sin(theta) = 4.9 kPa; with c less the slab accelerates at
+  // g sin(theta) - c/(rho H).
+  const double weight = 2000 * 9.81 * 0.5 * std::sin(30 * degree), time = 0.8;
+  const auto speed_after = [&](std::optional<double> cohesion, Precision precision) {
+    Model m;
+    set_ground(m, {{{-1, 0}, {12, 0}}, false, false, false, 0, 0});
+    m.slide = {{{{0, 0}, {3, 0}, {3, 0.5}, {0, 0.5}}, 0}};
+    m.materials = {{"clay", 2000, 20 * degree, 4 * weight, 0}};
+    m.g = {9.81 * std::sin(30 * degree), -9.81 * std::cos(30 * degree)};
+    m.dx = 0.1;
+    m.numerics.precision = precision;
+    m.numerics.velocity_jump = VelocityJump::reconstructed;  // the whole jump across the wall would drag by 1 kPa
+    m.boundaries.front().slip = WallSlip::friction;
+    m.boundaries.front().c = cohesion;
+    m.time.end = time;
+    Simulation simulation(m, plan_particles(m));
+    run(simulation, m.time.end);
+    double momentum = 0.0;  // along the slope
+    for (std::size_t i = 0; i < simulation.soil().size(); ++i)
+      momentum += simulation.soil().m[i] * simulation.soil().vx[i];
+    return momentum / (2000 * 3 * 0.5);
+  };
+  const double free_fall = 9.81 * std::sin(30 * degree) * time;
+  for (const auto precision : {Precision::single, Precision::full}) {
+    EXPECT_NEAR(speed_after(0.0, precision), free_fall, 0.03 * free_fall);
+    EXPECT_NEAR(speed_after(0.5 * weight, precision), 0.5 * free_fall, 0.03 * free_fall);
+    EXPECT_LT(speed_after(1.1 * weight, precision), 0.02 * free_fall);
+    EXPECT_LT(speed_after({}, precision), 0.02 * free_fall) << "the soil's own cohesion acts on the wall";
+  }
+}
+
 TEST(Simulation, BlocksOnTwoBoundariesSlideEachAtTheFrictionOfItsOwn) {
   Model m;
   m.terrain.bed = {{-1, 0}, {12, 0}};

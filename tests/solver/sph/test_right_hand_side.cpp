@@ -76,13 +76,16 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
         diffusion += V * (s.rho[j] - s.rho[i] - hydrostatic) * (-x * gx - y * gy) / (d * d);
       }
     }
-    double tan_phi = s.tan_phi[i];
+    double tan_phi = s.tan_phi[i], c = s.c[i];
     for (std::size_t j = 0; j < nw; ++j) {
       const double x = s.x[i] - w.x[j], y = s.y[i] - w.y[j], d = std::hypot(x, y);
       const WallPair pair = wall_pair(i, j);
       if (!pair.acts) continue;
-      if (slip(j) == WallSlip::friction && pair.distance < 1.1 * k.h)
-        tan_phi = std::min(tan_phi, k.boundaries[static_cast<std::size_t>(w.boundary[j])].tan_phi);
+      if (slip(j) == WallSlip::friction && pair.distance < 1.1 * k.h) {
+        const WallFriction& of_wall = k.boundaries[static_cast<std::size_t>(w.boundary[j])];
+        tan_phi = std::min(tan_phi, of_wall.tan_phi);
+        c = std::min(c, of_wall.c);
+      }
       const double gx = dW(d) * x / d, gy = dW(d) * y / d;
       Lxx -= w.volume * pair.vx * gx;
       Lxy -= w.volume * pair.vx * gy;
@@ -102,7 +105,7 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     const double norm2_e = exx * exx + eyy * eyy + ezz * ezz + 2 * exy * exy;
     const bool printed = k.rheology.shear_rate == ShearRate::paper;
     r.gamma_dot[i] = std::sqrt((printed ? 2.0 / 3 : 2.0) * norm2_e);
-    const double tau_y = s.c[i] + std::max(p, 0.0) * tan_phi;
+    const double tau_y = c + std::max(p, 0.0) * tan_phi;
     double eta = law.eta;
     if (const InertialFriction<>& grains = law.mu_i; grains.d > 0 && p > 0) {
       const double I = r.gamma_dot[i] * grains.d / std::sqrt(p / grains.rho_s);
@@ -155,13 +158,14 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     tan_phi /= sum;
     const double factor = k.rheology.shear_rate == ShearRate::paper ? std::sqrt(3.0) : 1.0, tzz = -txx - tyy;
     const double size = std::sqrt((txx * txx + tyy * tyy + tzz * tzz) / 2 + txy * txy) / sum, p_mean = p_soil / sum;
-    const double ratio = p_soil > 0 ? std::max(r.wall_p[q] / p_mean, 0.0) : 1.0;
-    const double tan_wall = k.boundaries[static_cast<std::size_t>(w.boundary[q])].tan_phi;
+    const double ratio = p_soil > 0 ? std::clamp(r.wall_p[q] / p_mean, 0.0, 6.0) : 1.0;
+    const WallFriction& of_wall = k.boundaries[static_cast<std::size_t>(w.boundary[q])];
     const double yield_soil = factor * (cohesion + tan_phi * std::max(p_mean, 0.0)),
-                 yield_wall = factor * (cohesion + std::min(tan_phi, tan_wall) * std::max(r.wall_p[q], 0.0));
+                 yield_wall = factor * (std::min(cohesion, of_wall.c) +
+                                        std::min(tan_phi, of_wall.tan_phi) * std::max(r.wall_p[q], 0.0));
     double growth = 1;
     if (size > yield_soil)
-      growth = (std::min(ratio * yield_soil, yield_wall) + std::min(ratio, 3.0) * (size - yield_soil)) / size;
+      growth = (std::min(ratio * yield_soil, yield_wall) + ratio * (size - yield_soil)) / size;
     else if (size > 0)
       growth = std::min(ratio, yield_wall / size);
     double sxx = txx * growth / sum - r.wall_p[q], syy = tyy * growth / sum - r.wall_p[q], sxy = txy * growth / sum;
@@ -297,6 +301,10 @@ INSTANTIATE_TEST_SUITE_P(
                              k.numerics.density_filter = DensityFilter::shepard;
                            }},
                     Option{"friction", [](FlowConstants& k) { k.boundaries = {smoother}; }},
+                    Option{"cohesion_of_the_wall",
+                           [](FlowConstants& k) {
+                             k.boundaries = {{WallSlip::friction, 0.1, 40}, {WallSlip::friction, 0.1, 300}, smoother};
+                           }},
                     Option{"friction_where_approaching",
                            [](FlowConstants& k) {
                              k.boundaries = {smoother};
