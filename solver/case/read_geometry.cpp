@@ -163,10 +163,11 @@ void read_run_out(ObjectReader& in, Terrain& t, const SlideInput& slide, double 
             {"x from which run-outs are measured, in the direction of slides_to.", "[Z20] section 4",
              "the bed's uphill end: its least x, or its greatest if the slide goes to the left"});
   t.front_thickness = default_front_thickness(dx);
-  in.number("front_thickness_m", t.front_thickness, {"m", 0.0, 1e6, true},
-            {"Thickness of the soil, measured vertically, at the front that front_at_thickness_m states: the farthest "
-             "place of the deposit that is at least so thick. To compare particle spacings give one thickness for all.",
-             "user", "0.1 m or 1.5 particle spacings, whichever is more"});
+  in.number(
+      "front_thickness_m", t.front_thickness, {"m", 0.0, 1e6, true},
+      {"Thickness of the soil, measured vertically, at the front that front_at_thickness_m states: the farthest "
+       "place of the deposit that is at least that thick. To compare particle spacings give one thickness for all.",
+       "user", "0.1 m or 1.5 particle spacings, whichever is more"});
 }
 
 /// The top of an end wall that has one of its own.

@@ -179,7 +179,7 @@ std::vector<std::string> notes_on(const Measures& measures, double front_thickne
   if (std::min(ahead_of_body, ahead_of_mass) > thrown_ahead * dx)
     notes.push_back("the farthest particle lies " + rounded(ahead_of_mass) +
                     " m ahead of the front of 99 % of the mass and " + rounded(ahead_of_body) +
-                    " m ahead of the connected body: it was thrown, and is no front of the deposit");
+                    " m ahead of the connected body: it was thrown ahead and is not the front of the deposit");
   if (mass_ahead > thrown_ahead * dx)
     notes.push_back("the front of 99 % of the mass lies " + rounded(mass_ahead) +
                     " m ahead of the connected body: more than 1 % of the soil is separate from it");

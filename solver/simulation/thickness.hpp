@@ -22,8 +22,8 @@ struct SoilParcel {
 /// @return [m]. Pure; thread-safe.
 double thickness(std::span<const SoilParcel> parcels, double spacing, double s);
 
-/// Farthest run-out at which the soil is at least `least` thick, T(s) = least [m]; unset where it is so nowhere. As T
-/// is smooth, the front moves continuously with the particles and not by whole spacings.
+/// Farthest run-out at which the soil is at least `least` thick, T(s) = least [m]; unset if it is nowhere that thick.
+/// As T is smooth, the front moves continuously with the particles and not by whole spacings.
 /// @param parcels  in increasing order of run_out
 /// @param spacing  of the particles [m], > 0
 /// @param least    [m], > 0; below 1.5 spacings a single row of particles may decide it

@@ -39,7 +39,7 @@ inline constexpr std::array measure_table{
     Measure{"front_mass_99_m", "m", "99 % of the mass", true, &Measures::front_mass_99},
     Measure{"front_mass_999_m", "m", "99.9 % of the mass", true, &Measures::front_mass_999},
     Measure{"centre_of_mass_x_m", "m", "centre of mass", false, &Measures::centre_of_mass_x},
-    Measure{"front_at_thickness_m", "m", "given thickness", true, &Measures::front_at_thickness, true, true}};
+    Measure{"front_at_thickness_m", "m", "fixed thickness", true, &Measures::front_at_thickness, true, true}};
 
 /// The measure of a key; null where there is none.
 constexpr const Measure* find_measure(std::string_view key) {

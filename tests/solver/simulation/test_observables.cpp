@@ -156,6 +156,8 @@ TEST(FrontAtThickness, LeavesOutSoilThatLeftTheTerrain) {
   const std::vector<std::string> bounds = lower_bounds(soil, terrain, measures);
   EXPECT_LT(measures.front_at_thickness, 20.5);
   EXPECT_NE(std::ranges::find(bounds, "front_at_thickness_m"), bounds.end());
+  const std::vector<std::string> without = lower_bounds(soil, terrain, fronts(soil, {}, 50.0));
+  EXPECT_EQ(std::ranges::find(without, "front_at_thickness_m"), without.end()) << "no value, so no bound";
   for (std::size_t i = 80; i < soil.size(); ++i) soil.x[i] += 5.0;  // they are not of the body
   EXPECT_EQ(
       lower_bounds(soil, terrain, fronts(soil)),
