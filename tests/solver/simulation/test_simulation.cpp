@@ -328,6 +328,15 @@ TEST(Simulation, TheMassIsThatOfTheOutlines) {
   EXPECT_LT(Simulation(whole, plan_particles(whole)).result().mass.filled, 0.97 * r.mass.outline);
 }
 
+TEST(Simulation, TheLatticeOfTheModelIsFilled) {
+  const Model m = sloping(SlidesTo::right);
+  Model turned = m;
+  turned.lattice = {{0.25, 0.5}, 0.5};
+  const ParticlePlan plan = plan_particles(m), other = plan_particles(turned);
+  EXPECT_NEAR(slide_mass(turned, other).filled, slide_mass(m, plan).filled, 1e-5 * slide_mass(m, plan).filled);
+  EXPECT_GT(norm(other.soil.back().x - plan.soil.back().x), 0.1 * m.dx);
+}
+
 TEST(Simulation, NoParticleAndTooManyAreRefused) {
   Model m = collapse(0.1);
   m.max_particles = 50;
