@@ -12,6 +12,8 @@
 #include "base/json.hpp"
 #include "http/server.hpp"
 #include "http/service.hpp"
+#include "jobs/backup.hpp"
+#include "jobs/orphans.hpp"
 #include "options.hpp"
 #include "support/files.hpp"
 
@@ -54,22 +56,55 @@ FileDescriptor wait_for_lock(const std::filesystem::path& path, bool inherited, 
   }
 }
 
+/// The data directory, made if need be, for this process alone.
+class ClaimedData {
+ public:
+  /// @throws IoError where another talusd or its workers use it
+  explicit ClaimedData(const DataDirectory& data) {
+    for (const auto& directory : {data.root, data.jobs(), data.scratch()})
+      std::filesystem::create_directories(directory);
+    lock_ = wait_for_lock(data.lock(), false, std::chrono::seconds(1), "another talusd is using " + data.root.string());
+    // The workers of a killed talusd end a moment after it; until then they may still write into the data directory.
+    workers_lock_ =
+        wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
+                      "workers of an earlier talusd still run in " + data.root.string() + "; stop them first");
+  }
+
+ private:
+  FileDescriptor lock_, workers_lock_;
+};
+
+talus::service::Store open_store(const Config& config) {
+  const DataDirectory data{config.data};
+  return {data.database(), data.jobs(), system_now,
+          std::chrono::duration_cast<std::chrono::milliseconds>(config.lease).count()};
+}
+
+int adopt(const Config& config) {
+  const DataDirectory data{config.data};
+  const ClaimedData claimed(data);
+  talus::service::Store store = open_store(config);
+  put_orphans_aside(data, store.job_ids());
+  for (const Adoption& of : adopt_orphans(data, store))
+    std::cout << (of.adopted ? "adopted " : "left ") << of.name << ": " << of.message << "\n";
+  return static_cast<int>(Exit::ok);
+}
+
+int back_up_data(const Config& config, const std::filesystem::path& target) {
+  const BackupReport report = back_up({config.data}, target);
+  for (const std::string& id : report.missing) std::cerr << "talusd: job " << id << " has no directory\n";
+  std::cout << target.string() << ": " << report.jobs << " jobs, " << report.files << " files, " << (report.bytes >> 20)
+            << " MiB\n";
+  return static_cast<int>(Exit::ok);
+}
+
 int serve(Config config) {
   const sigset_t stop_signals = hold_stop_signals();
   raise_file_limit();
-  ::umask(027);  // the data of jobs are not readable for every user of this machine
   const Tokens tokens = config.tokens.empty() ? Tokens() : Tokens(config.tokens);
   const DataDirectory data{config.data};
-  for (const auto& directory : {data.root, data.jobs(), data.scratch()}) std::filesystem::create_directories(directory);
-  const FileDescriptor lock =
-      wait_for_lock(data.lock(), false, std::chrono::seconds(1), "another talusd is using " + data.root.string());
-  // The workers of a killed talusd end a moment after it; until then they may still write into the data directory.
-  const FileDescriptor workers_lock =
-      wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
-                    "workers of an earlier talusd still run in " + data.root.string() + "; stop them first");
-
-  talus::service::Store store(data.database(), data.jobs(), system_now,
-                              std::chrono::duration_cast<std::chrono::milliseconds>(config.lease).count());
+  const ClaimedData claimed(data);
+  talus::service::Store store = open_store(config);
   Scheduler scheduler(config, store);
   Jobs jobs(config, store, scheduler);
   std::atomic<bool> stopping{false};
@@ -114,12 +149,15 @@ int serve(Config config) {
 int main(int argc, char** argv) {
   const Options options = read_options(argc, argv);
   if (options.exit) return *options.exit;
+  ::umask(027);  // the data of jobs are not readable for every user of this machine
   try {
     if (!options.new_token.empty()) {
       const auto [token, line] = new_token(options.new_token[0], options.new_token[1]);
       std::cout << "token: " << token << "\nline for the tokens file: " << line << "\n";
       return static_cast<int>(Exit::ok);
     }
+    if (options.adopt) return adopt(options.config);
+    if (!options.backup.empty()) return back_up_data(options.config, options.backup);
     return serve(options.config);
   } catch (const std::exception& e) {
     std::cerr << "talusd: " << e.what() << "\n";

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/digest.hpp"
+#include "jobs/job_record.hpp"
 #include "support/csv.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
@@ -131,7 +132,9 @@ CommandOutput Jobs::run(const Command& command, seconds limit, Semaphore& slots,
   return output;
 }
 
-TemporaryDirectory Jobs::scratch_directory() const { return TemporaryDirectory(data_.scratch() / random_hex(8)); }
+TemporaryDirectory Jobs::scratch_directory() const {
+  return TemporaryDirectory(data_.scratch() / random_hex(DataDirectory::scratch_bytes));
+}
 
 Json Jobs::validate(const Json& document, const std::string& pointer) {
   const TemporaryDirectory scratch = scratch_directory();
@@ -188,8 +191,8 @@ void Jobs::check_size(double particles, double steps, std::int64_t realizations,
   refuse_if_any(faults, reason::quota, "the job exceeds a quota");
 }
 
-std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response) {
-  std::optional<Job> recorded = store_.create(job, response);
+std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response, Milliseconds created) {
+  std::optional<Job> recorded = store_.create(job, response, created);
   if (recorded) scheduler_.wake();
   return recorded;
 }
@@ -199,7 +202,7 @@ std::optional<Job> Jobs::submit_study(const Submission& submission, const Store:
   const StudyInputs study = read_study_inputs(submission.inputs);
   const Json demand = validate(study.document, "/inputs/case");
 
-  NewJob job{.id = random_hex(16), .process = "influence-zone", .subject = submission.subject};
+  NewJob job{.id = random_hex(DataDirectory::id_bytes), .process = "influence-zone", .subject = submission.subject};
   const Json& options = study.document.at("study");
   job.planned = options.value("realizations", std::int64_t{100});
   job.seed =
@@ -222,8 +225,10 @@ std::optional<Job> Jobs::submit_study(const Submission& submission, const Store:
   job.may_stop_early = plan.study.stop_half_width.has_value();
   job.case_hash = plan.of.hash;
   job.inputs = dump({{"quantity", study.quantity}, {"outputs", submission.outputs}, {"raw", submission.raw}});
+  const Milliseconds now = system_now();
+  write_job_record(made.path(), job, now);
   made.move_to(data_.job(job.id));
-  std::optional<Job> recorded = record(job, response);
+  std::optional<Job> recorded = record(job, response, now);
   if (recorded) made.keep();
   return recorded;
 }
@@ -234,9 +239,12 @@ std::optional<Job> Jobs::submit_echo(const Submission& submission, const Store::
                      {"raw", submission.raw},
                      {"pause", submission.inputs.value("pause", 0.0)},
                      {"inputs", submission.inputs}};
-  return record(
-      {.id = random_hex(16), .process = "echo", .subject = submission.subject, .title = "echo", .inputs = dump(kept)},
-      response);
+  return record({.id = random_hex(DataDirectory::id_bytes),
+                 .process = "echo",
+                 .subject = submission.subject,
+                 .title = "echo",
+                 .inputs = dump(kept)},
+                response, system_now());
 }
 
 void Jobs::dismiss(const Job& job) {

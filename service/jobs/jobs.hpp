@@ -54,7 +54,7 @@ class Jobs {
   /// @param pointer  of every fault; empty: that of the input concerned
   void check_size(double particles, double steps, std::int64_t realizations, const std::string& pointer = "") const;
   void check_queue(const std::string& subject) const;
-  std::optional<Job> record(const NewJob& job, const Store::Response& response);
+  std::optional<Job> record(const NewJob& job, const Store::Response& response, Milliseconds created);
   /// `talus ARGUMENTS`, for at most `limit`. @throws Refusal where it cannot start, takes longer, or cannot read or
   /// write
   CommandOutput run_command(std::vector<std::string> arguments, std::chrono::seconds limit);

@@ -4,6 +4,7 @@
 
 #include "base/json.hpp"
 #include "executor/slurm.hpp"
+#include "jobs/orphans.hpp"
 #include "study/estimator.hpp"
 #include "support/files.hpp"
 #include "support/text.hpp"
@@ -65,7 +66,8 @@ void Scheduler::count(const RunEvent& event) {
 }
 
 void Scheduler::start() {
-  move_orphans_aside();
+  put_orphans_aside(data_, store_.job_ids());
+  complete_job_records(data_, store_);
   const std::int64_t requeued = store_.requeue_all();
   if (requeued > 0) log_info("requeued", {{"runs", requeued}, {"why", "an earlier talusd held them"}});
   thread_ = std::thread([this] { loop(); });
@@ -228,31 +230,6 @@ void Scheduler::remove_dismissed() {
       next_removal_ = Steady::now() + removal_interval;
     }
   }
-}
-
-/// At start: moves directories that the queue does not know to DATA/orphans. They may be the results of a queue that
-/// was lost or restored from an older backup. Only unfinished submissions and scratch files are deleted.
-void Scheduler::move_orphans_aside() {
-  const std::set<std::string> known = store_.job_ids();
-  for (const auto& entry : fs::directory_iterator(data_.jobs())) {
-    const std::string name = entry.path().filename().string();
-    if (known.contains(name)) continue;
-    if (name.starts_with(DataDirectory::unfinished_prefix)) {
-      removed(entry.path());
-      continue;
-    }
-    fs::path target = data_.orphans() / name;
-    for (int copy = 2; fs::exists(fs::symlink_status(target)); ++copy)
-      target = data_.orphans() / (name + "-" + std::to_string(copy));
-    fs::create_directories(data_.orphans());
-    fs::rename(entry.path(), target);
-    ++counters_.orphans;
-    log_error("orphan", {{"directory", entry.path().string()},
-                         {"moved_to", target.string()},
-                         {"why", "the queue knows no job of this name; was the queue lost or restored?"}});
-  }
-  removed(data_.scratch());
-  fs::create_directories(data_.scratch());
 }
 
 void Scheduler::drain() {

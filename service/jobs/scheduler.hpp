@@ -20,7 +20,6 @@ struct RunCounters {
   std::array<std::atomic<std::int64_t>, 6> ended{};  ///< runs by RunEvent::Kind
   std::atomic<std::int64_t> wall_clock_ms{0};        ///< of the done ones
   std::atomic<int> running{0};                       ///< now
-  std::atomic<int> orphans{0};                       ///< directories moved to DATA/orphans at start
 };
 
 /// Wakes the requests that wait for a change of a job. Thread-safe.
@@ -82,7 +81,6 @@ class Scheduler {
   void note_pending_reasons();
   void run_echo();
   void remove_dismissed();
-  void move_orphans_aside();
   bool room_on_disk() const;
 
   const Config& config_;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "queue/records.hpp"
+#include "study/directory_store.hpp"
 
 namespace talus::service {
 
@@ -153,6 +154,9 @@ bool change_job(SQLite::Database& db, std::int64_t job, Milliseconds now, const 
              "UPDATE jobs SET updated = ?2, version = version + 1, " + changes + " WHERE number = ?1 AND " + condition,
              job, now, values...) == 1;
 }
+
+/// Records runs that wait as ended, within a transaction; keys that the job does not have are ignored.
+void record_ended_runs(SQLite::Database& db, std::int64_t job, RunKind kind, const Records& records, Milliseconds now);
 
 inline constexpr const char* job_is_open = "state IN ('accepted', 'running')";
 /// Holds for a job none of whose runs waits or is under way. Two terms, since each has its partial index.

@@ -11,6 +11,7 @@
 
 #include "queue/database.hpp"
 #include "queue/records.hpp"
+#include "study/directory_store.hpp"
 #include "study/publish.hpp"
 #include "study/store.hpp"
 #include "study/summary.hpp"
@@ -33,8 +34,13 @@ class Store final : public talus::Store {
 
   /// Records a job and its runs; durable when this returns.
   /// @param response  stored in the same transaction; unset: the request had no key
+  /// @param created  unset: now
   /// @return the job; nothing where another request has used the key meanwhile
-  std::optional<Job> create(const NewJob& job, const Response& response = {});
+  std::optional<Job> create(const NewJob& job, const Response& response = {},
+                            const std::optional<Milliseconds>& created = {});
+  /// Records a job again that the queue has lost, with the outcomes that its directory holds; the rest is queued.
+  /// @param created  when it was first recorded
+  Job recreate(const NewJob& job, Milliseconds created, const Records& runs, const Records& replicates);
   std::optional<Job> job(const std::string& id);
   std::optional<Job> job(std::int64_t number);
   std::vector<Job> jobs(const JobFilter& filter);
@@ -43,6 +49,8 @@ class Store final : public talus::Store {
   /// The ids of the jobs in a state, or of all.
   std::set<std::string> job_ids(const std::optional<JobState>& state = {});
   StateCounts state_counts();
+  /// Visits the studies that are not dismissed, one at a time.
+  void visit_studies(const std::function<void(const Job&)>& visit);
 
   /// Records why no run of an open job is under way; empty: the reason is unknown.
   void note_pending_reason(std::int64_t job, const std::string& why);

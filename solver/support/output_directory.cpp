@@ -21,12 +21,6 @@ const char* name(OutputKind kind) { return kind_names[static_cast<int>(kind)]; }
                 "; choose another directory or remove this one");
 }
 
-/// A leftover of a write_file_atomically that was killed.
-bool is_temporary(const fs::path& file) {
-  const std::string text = file.filename().string();
-  return text.starts_with('.') && text.find(".tmp-") != std::string::npos;
-}
-
 /// A directory is ours once it has the marker; before that it may only hold what a killed claim leaves behind.
 void refuse_foreign(const fs::path& directory) {
   if (find_output_marker(directory)) return;
@@ -51,6 +45,13 @@ void remove_temporaries(const fs::path& directory) {
 }
 
 }  // namespace
+
+bool is_output_lock(const fs::path& file) { return file.filename() == lock_name; }
+
+bool is_temporary(const fs::path& file) {
+  const std::string text = file.filename().string();
+  return text.starts_with('.') && text.find(".tmp-") != std::string::npos;
+}
 
 std::optional<OutputMarker> find_output_marker(const fs::path& directory) {
   const fs::path path = directory / marker_name;

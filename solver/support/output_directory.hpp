@@ -35,6 +35,11 @@ struct OutputMarker {
 /// @throws IoError when there is one that cannot be read or is not ours
 std::optional<OutputMarker> find_output_marker(const std::filesystem::path& directory);
 
+/// The file that a directory of results is locked with.
+bool is_output_lock(const std::filesystem::path& file);
+/// What a write_file_atomically has not finished, or left when it was killed.
+bool is_temporary(const std::filesystem::path& file);
+
 /// A directory claimed for one run or study, for as long as the object lives.
 ///
 /// It is created (parents too), or was empty, or carries our marker file `talus-output.json`. An advisory lock (flock
