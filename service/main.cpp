@@ -16,6 +16,7 @@
 #include "jobs/orphans.hpp"
 #include "options.hpp"
 #include "support/files.hpp"
+#include "support/standard_output.hpp"
 
 namespace {
 
@@ -141,12 +142,13 @@ int serve(Config config) {
   server->stop();
   http.join();
   log_info("stopped");
+  std::cout.clear();  // a daemon whose standard output is closed has done its work all the same
+  std::clearerr(stdout);
   return static_cast<int>(Exit::ok);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// The program, but for the check of its output. @return the exit code
+int run_program(int argc, char** argv) {
   const Options options = read_options(argc, argv);
   if (options.exit) return *options.exit;
   ::umask(027);  // the data of jobs are not readable for every user of this machine
@@ -166,3 +168,7 @@ int main(int argc, char** argv) {
     return static_cast<int>(io ? Exit::io : Exit::internal);
   }
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return checked_output(run_program(argc, argv), "talusd"); }
