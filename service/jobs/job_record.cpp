@@ -3,6 +3,7 @@
 #include "base/digest.hpp"
 #include "base/json.hpp"
 #include "jobs/config.hpp"
+#include "study/run_key.hpp"
 #include "support/files.hpp"
 
 namespace talus::service {
@@ -10,11 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t max_bytes = std::size_t{1} << 24;
+constexpr std::size_t max_bytes = std::size_t{1} << 28;
 
 JobRecord from_json(const Json& json) {
   JobRecord record{.job = {.id = json.at("id"), .process = json.at("process"), .subject = json.at("subject")},
-                   .created = json.at("created_ms")};
+                   .created = json.at("created_ms"),
+                   .document = json.at("case")};
   NewJob& job = record.job;
   job.title = json.at("title");
   job.inputs = dump(json.at("inputs"));
@@ -49,7 +51,8 @@ void write_job_record(const fs::path& directory, const NewJob& job, Milliseconds
                      {"case_hash", job.case_hash},
                      {"particles", job.particles},
                      {"steps", job.steps},
-                     {"created_ms", created}};
+                     {"created_ms", created},
+                     {"case", read_json(StudyPaths{directory}.resolved_case(), max_bytes)}};
   write_file_atomically(job_record_path(directory), with_checksum(json));
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/digest.hpp"
 #include "jobs/job_record.hpp"
+#include "jobs/repair.hpp"
 #include "support/csv.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
@@ -254,18 +255,58 @@ void Jobs::dismiss(const Job& job) {
 
 void Jobs::retry(const Job& job, const Store::Response& response) {
   if (ended(job.state)) check_queue(job.subject);  // it will be open again
-  store_.retry_failed(job.number, response);
+  repair(job);
+  const std::vector<RunKey> lost = lost_results(data_, job, store_);
+  store_.requeue_lost(job.number, lost);
+  const std::int64_t failed = store_.retry_failed(job.number, response);
+  if (lost.empty() && failed == 0 && job.state == JobState::successful) publish_again(job);
   scheduler_.wake(job.number);
+}
+
+void Jobs::repair(const Job& job) {
+  const std::lock_guard one_at_a_time(changing_study_);
+  try {
+    const fs::path case_file = checked_case(data_, job);
+    const TemporaryDirectory scratch = scratch_directory();
+    const fs::path made = scratch / "study";
+    check(prepare(case_file, {made}, job.planned, job.seed), "the plan");
+    repair_directory(data_, job, made);
+  } catch (const IoError& e) {
+    log_error("not_repaired", {{"job", job.id}, {"why", e.what()}});
+    throw Refusal(reason::conflict, "files of the job are lost: the operator can restore them from a backup");
+  }
+}
+
+Plan Jobs::plan_of(const Job& job) {
+  const auto found = [&]() -> std::optional<Plan> {
+    try {
+      return find_plan(data_.job(job.id));
+    } catch (const IoError&) {
+      return std::nullopt;
+    }
+  };
+  std::optional<Plan> plan = found();
+  if (!plan) {
+    repair(job);
+    plan = find_plan(data_.job(job.id));
+  }
+  plan->study.realizations = job.planned;
+  return std::move(*plan);
+}
+
+void Jobs::publish_again(const Job& job) {
+  publish({data_.job(job.id)}, plan_of(job), store_.records(job.number, RunKind::realization),
+          store_.records(job.number, RunKind::replicate));
 }
 
 bool Jobs::extend(const Job& job, std::int64_t more, const Store::Response& response) {
   if (job.may_stop_early) throw Refusal(reason::conflict, "a study that stops by itself cannot be extended");
-  const std::lock_guard one_at_a_time(extending_);  // two at once would both add to the same number
+  const std::lock_guard one_at_a_time(changing_study_);  // two at once would both add to the same number
   const std::int64_t planned = store_.job(job.number)->planned + more;
   ended(job.state) ? check_queue(job.subject) : check_disk();  // an ended one will be open again
   check_size(job.particles, job.steps, planned, "/realizations");
   const StudyPaths directory{data_.job(job.id)};
-  const CommandOutput prepared = prepare(directory.resolved_case(), directory, planned, job.seed);
+  const CommandOutput prepared = prepare(checked_case(data_, job), directory, planned, job.seed);
   if (!prepared.ok())
     throw Refusal(reason::conflict, prepared.err.empty() ? "the study cannot be extended" : prepared.err);
   const bool fresh = store_.extend(job.number, planned, response);
@@ -294,29 +335,36 @@ Json Jobs::distribution(const Job& job, const Measure& quantity, const Bins& bin
   const std::string key =
       job.id + "/" + quantity.key + "/" + std::to_string(bins.count) + "/" + Json(bins.edges).dump();
   return distributions_.get(key, job.version, ended(job.state) ? milliseconds(0) : histogram_age, [&] {
-    std::optional<Plan> plan = find_plan(data_.job(job.id));
-    if (!plan) throw Refusal(reason::internal, "the plan of the job is missing");
-    plan->study.realizations = job.planned;
+    const Plan plan = plan_of(job);
     Json answer =
-        talus::distribution(*plan, quantity, store_.measure_sample(job, quantity, plan->study.stop_half_width), bins);
+        talus::distribution(plan, quantity, store_.measure_sample(job, quantity, plan.study.stop_half_width), bins);
     drop_nulls(answer);
     return answer;
   });
 }
 
-Json Jobs::summary(const Job& job) const {
-  const auto text = find_file(StudyPaths{data_.job(job.id)}.summary(), max_bytes);
-  if (!text) throw Refusal(reason::result_not_ready, "there are no statistics of this job");
-  return Json::parse(*text);
+Json Jobs::summary(const Job& job) {
+  const fs::path file = StudyPaths{data_.job(job.id)}.summary();
+  const auto read = [&] {
+    Json summary = read_json(file, max_bytes);
+    summary.erase("checksum");  // of the file
+    return summary;
+  };
+  try {
+    return read();
+  } catch (const IoError& e) {
+    log_error("made_again", {{"job", job.id}, {"file", file.string()}, {"why", e.what()}});
+  }
+  publish_again(job);
+  return read();
 }
 
 std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
   const TemporaryDirectory scratch = scratch_directory();
   const fs::path file = scratch / (svg ? "field.svg" : "field.csv");
-  const CommandOutput output =
-      run_command({"field", StudyPaths{data_.job(job.id)}.resolved_case(), "--realization", std::to_string(index),
-                   "--seed", std::to_string(job.seed), "--out", file, "--json"},
-                  seconds(60));
+  const CommandOutput output = run_command({"field", checked_case(data_, job), "--realization", std::to_string(index),
+                                            "--seed", std::to_string(job.seed), "--out", file, "--json"},
+                                           seconds(60));
   check(output, "the field");
   const std::string text = read_file(file, max_bytes);
   if (svg) return text;
@@ -335,14 +383,14 @@ std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
 
 std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
   const StudyPaths study{data_.job(job.id)};
+  const fs::path case_file = checked_case(data_, job);
   fs::create_directories(study.profiles());
   const std::string extension = svg ? ".svg" : ".json";
   const fs::path kept = study.profiles() / (std::to_string(index) + extension);
   if (auto text = find_file(kept, max_bytes)) return *text;
   const TemporaryDirectory scratch = scratch_directory();
   const fs::path out = scratch / "run", file = scratch / ("profile" + extension);
-  check(run_once({study.resolved_case(), "--realization", std::to_string(index), "--seed", std::to_string(job.seed),
-                  "--out", out},
+  check(run_once({case_file, "--realization", std::to_string(index), "--seed", std::to_string(job.seed), "--out", out},
                  seconds(3600)),
         "the profile");
   check(run_command({"profile", out, "--out", file}, seconds(60)), "the profile");

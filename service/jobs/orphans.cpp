@@ -148,7 +148,7 @@ std::vector<Adoption> adopt_orphans(const DataDirectory& data, Store& store) {
 void complete_job_records(const DataDirectory& data, Store& store) {
   store.visit_studies([&](const Job& job) {
     const fs::path directory = data.job(job.id);
-    if (!fs::exists(directory))
+    if (!fs::exists(StudyPaths{directory}.resolved_case()))
       log_error("job_directory_missing", {{"job", job.id}, {"directory", directory.string()}});
     else if (!fs::exists(job_record_path(directory)))
       write_job_record(directory, job, job.created);

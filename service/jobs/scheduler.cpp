@@ -5,6 +5,7 @@
 #include "base/json.hpp"
 #include "executor/slurm.hpp"
 #include "jobs/orphans.hpp"
+#include "jobs/repair.hpp"
 #include "study/estimator.hpp"
 #include "support/files.hpp"
 #include "support/text.hpp"
@@ -129,8 +130,7 @@ void Scheduler::tick() {
   if (read_queue_) {
     engine_.start_runs();
     counters_.running = static_cast<int>(engine_.running());
-    finish_complete();
-    read_queue_ = false;
+    read_queue_ = finish_complete();
     changes_.notify();
   }
   if (Steady::now() < next_reasons_) return;
@@ -142,11 +142,12 @@ bool Scheduler::room_on_disk() const {
   return disk_left(config_.data) >= std::max(config_.quotas.disk_bytes / 2, least_disk_bytes);
 }
 
-/// The statistics of jobs whose runs have all ended.
-void Scheduler::finish_complete() {
+/// The statistics of jobs whose runs have all ended. @return whether runs have been queued again instead
+bool Scheduler::finish_complete() {
+  bool requeued = false;
   for (const Job& job : store_.complete_jobs()) {
     try {
-      finish(job);
+      requeued |= !finish(job);
     } catch (const IoError& e) {
       log_error("no_statistics", {{"job", job.id}, {"why", e.what()}});
       if (!room_on_disk()) throw;  // tried again when there is room
@@ -155,10 +156,17 @@ void Scheduler::finish_complete() {
     engine_.forget(job.number);
     changes_.notify();
   }
+  return requeued;
 }
 
-void Scheduler::finish(const Job& job) {
+/// @return false where results are missing: their runs are queued again
+bool Scheduler::finish(const Job& job) {
   const StudyPaths paths{data_.job(job.id)};
+  if (const std::vector<RunKey> missing = missing_results(data_, job, store_); !missing.empty()) {
+    log_error("results_missing", {{"job", job.id}, {"runs", missing.size()}});
+    store_.requeue_lost(job.number, missing);
+    return false;
+  }
   std::optional<Plan> plan = find_plan(paths.root);
   if (!plan) throw IoError("there is no plan.json in " + paths.root.string());
   plan->study.realizations = job.planned;
@@ -170,13 +178,14 @@ void Scheduler::finish(const Job& job) {
   if (too_many) message += ": more than max_failed_share = " + to_text(job.max_failed_share) + " of those planned";
   if (const std::string quality = quality_line(summary.quality_json()); !quality.empty()) message += "; " + quality;
   if (summary.stopped_early()) message += "; stopped early: the mean has the requested precision";
-  if (!store_.finish(job.number, too_many ? JobState::failed : JobState::successful, message)) return;
+  if (!store_.finish(job.number, too_many ? JobState::failed : JobState::successful, message)) return true;
   log_info("job_ended", {{"job", job.id},
                          {"state", too_many ? "failed" : "successful"},
                          {"done", summary.done()},
                          {"failed", summary.failed()}});
   std::error_code ignored;
   fs::remove_all(paths.work(), ignored);
+  return true;
 }
 
 /// Records why the executor runs nothing of a job.

@@ -76,8 +76,8 @@ class Scheduler {
   void end_runs();
   EngineOptions engine_options();
   void count(const RunEvent& event);
-  void finish_complete();
-  void finish(const Job& job);
+  bool finish_complete();
+  bool finish(const Job& job);
   void note_pending_reasons();
   void run_echo();
   void remove_dismissed();

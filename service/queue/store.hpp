@@ -60,6 +60,8 @@ class Store final : public talus::Store {
   bool finish(std::int64_t job, JobState state, const std::string& message);
   /// Dismisses a job in any state and deletes its runs, so no claim on them is current any more.
   void dismiss(std::int64_t job);
+  /// Requeues runs that are done, since their results are lost, and opens the job again.
+  void requeue_lost(std::int64_t job, std::span<const RunKey> lost);
   /// Requeues the failed runs. @return how many
   std::int64_t retry_failed(std::int64_t job, const Response& response = {});
   /// Adds realizations up to `planned` in all, unless the job has been dismissed.

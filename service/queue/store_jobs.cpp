@@ -52,6 +52,13 @@ Job insert_job(SQLite::Database& db, const NewJob& job, Milliseconds created, Mi
 /// Thrown inside a transaction so that it is rolled back.
 struct KeyTaken {};
 
+/// The counts of a job from its runs.
+constexpr const char* counted_anew =
+    "done = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done'), "
+    "sound = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done' AND verdict = 'sound'), "
+    "doubtful = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done' AND verdict = 'doubtful'), "
+    "replicates_ended = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 1 AND state IN ('done', 'failed'))";
+
 constexpr const char* reopened = "state = 'running', finished = NULL, message = ''";
 
 }  // namespace
@@ -173,6 +180,18 @@ void Store::dismiss(std::int64_t job) {
     change_job(db, job, clock_(), "state = 'dismissed', message = 'dismissed', finished = COALESCE(finished, ?2)",
                "state != 'dismissed'");
     execute(db, "DELETE FROM runs WHERE job = ?", job);
+  });
+}
+
+void Store::requeue_lost(std::int64_t job, std::span<const RunKey> lost) {
+  if (lost.empty()) return;
+  db_.write([&](SQLite::Database& db) {
+    for (const RunKey& key : lost)
+      execute(db,
+              "UPDATE runs SET state = 'queued', crashes = 0 "
+              "WHERE job = ? AND level = ? AND kind = ? AND idx = ? AND state = 'done'",
+              job, key);
+    change_job(db, job, clock_(), std::string(reopened) + ", " + counted_anew, "state != 'dismissed'");
   });
 }
 

@@ -53,8 +53,10 @@ bool is_temporary(const fs::path& file) {
   return text.starts_with('.') && text.find(".tmp-") != std::string::npos;
 }
 
+fs::path output_marker_path(const fs::path& directory) { return directory / marker_name; }
+
 std::optional<OutputMarker> find_output_marker(const fs::path& directory) {
-  const fs::path path = directory / marker_name;
+  const fs::path path = output_marker_path(directory);
   std::error_code error;
   if (!fs::exists(path, error) && !error) return std::nullopt;
   return read_json(path, 1 << 16, "a marker of Talus; remove the directory or choose another one",
@@ -109,7 +111,7 @@ void OutputDirectory::write_marker() const {
   const Json json = {{"program", "talus"},           {"kind", name(marker_.kind)},
                      {"case_hash", marker_.of.hash}, {"case_hash_without_end", marker_.of.hash_without_end},
                      {"end_s", marker_.of.end},      {"finished", marker_.finished}};
-  write_file_atomically(path_ / marker_name, json.dump(2) + "\n");
+  write_file_atomically(output_marker_path(path_), with_checksum(json));
 }
 
 }  // namespace talus

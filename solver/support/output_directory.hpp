@@ -31,6 +31,8 @@ struct OutputMarker {
   bool finished = false;  ///< everything has been written
 };
 
+/// The marker file of a directory.
+std::filesystem::path output_marker_path(const std::filesystem::path& directory);
 /// The marker of a directory, or nothing where there is none.
 /// @throws IoError when there is one that cannot be read or is not ours
 std::optional<OutputMarker> find_output_marker(const std::filesystem::path& directory);

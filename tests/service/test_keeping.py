@@ -22,9 +22,7 @@ def talusd(*options, code=0):
     return done.stdout if code == 0 else done.stderr
 
 
-class Keeping(ServiceTest):
-    """No result is deleted because the queue does not know it, and what was put aside can be taken back."""
-
+class Kept(ServiceTest):
     def results(self, job):
         summary = self.daemon.get(f"/jobs/{job}/results").json["summary"]["value"]
         summary.pop("effort")  # seconds
@@ -33,6 +31,10 @@ class Keeping(ServiceTest):
     def wait_for_some(self, job, runs=2):
         while self.daemon.get(f"/jobs/{job}").json["realizations"]["done"] < runs:
             time.sleep(0.02)
+
+
+class Keeping(Kept):
+    """No result is deleted because the queue does not know it, and what was put aside can be taken back."""
 
     def forget_queue(self):
         for file in self.daemon.data.glob("queue.sqlite*"):
@@ -260,5 +262,107 @@ class Keeping(ServiceTest):
         self.assertIn(f"adopted {job}: 2 of 2", talusd("--data", self.daemon.data, "--adopt"))
 
 
+class Repair(Kept):
+    """Files of a job that are damaged or lost: results are run again, the rest is made again, and retry says the truth."""
+
+    def job_files(self, job):
+        return self.daemon.data / "jobs" / job
+
+    def flip(self, path, old, new):
+        text = path.read_bytes()
+        self.assertIn(old, text, path)
+        path.write_bytes(text.replace(old, new, 1))
+
+    def test_a_result_that_is_lost_while_the_job_runs_is_run_again(self):
+        self.start()
+        job = self.daemon.submit(study(12, spacing=0.8, end=1.5))
+        self.wait_for_some(job)
+        lost = sorted(path for path in (self.job_files(job) / "runs").glob("0*.json"))[0]
+        whole = json.loads(lost.read_text())["digest"]
+        lost.unlink()
+        self.assertEqual(self.daemon.wait_for(job)["realizations"], {"planned": 12, "done": 12, "failed": 0})
+        self.assertEqual(json.loads(lost.read_text())["digest"], whole)
+        self.assertIn("results_missing", self.daemon.log_text())
+
+    def test_retry_runs_lost_damaged_and_foreign_results_again(self):
+        self.start()
+        job = self.daemon.submit(study(5, noise_floor_replicates=2))
+        self.daemon.wait_for(job)
+        files, had, summary = self.job_files(job), digests(self.daemon.data, job), self.results(job)
+        (files / "runs/000000.json").unlink()
+        self.flip(files / "runs/000001.json", b'"digest": "', b'"digest": "0')
+        self.flip(files / "runs/000002.json", b'"steps": 1', b'"steps": 2')
+        shutil.copy(files / "floor/2.json", files / "runs/000003.json")
+        (files / "floor/1.json").write_text("{")
+        self.assertEqual(self.daemon.post(f"/jobs/{job}/retry").json["realizations"],
+                         {"planned": 5, "done": 1, "failed": 0})
+        info = self.daemon.wait_for(job)
+        self.assertEqual((info["status"], info["realizations"]["done"]), ("successful", 5))
+        self.assertEqual(digests(self.daemon.data, job), had)
+        self.assertEqual(self.results(job), summary)
+        self.assertEqual([self.daemon.get(f"/jobs/{job}/realizations/{i}").json["attempt"] for i in range(5)],
+                         [2, 2, 2, 2, 1])
+        self.assertTrue((files / "runs/000003.json.foreign").exists())
+
+    def test_files_that_follow_from_others_are_made_again(self):
+        self.start()
+        job = self.daemon.submit(study(4))
+        self.daemon.wait_for(job)
+        files, summary = self.job_files(job), self.results(job)
+        field = self.daemon.get(f"/jobs/{job}/realizations/0/field").json
+        whole = {path.name: path.read_bytes() for path in files.iterdir() if path.is_file()}
+        for name in ("study.json", "plan.json", "talus-output.json", "case.resolved.json", "job.json",
+                     "realizations.csv"):
+            for damage in (b"", b"{", whole[name][:-40], whole[name].replace(b"0", b"1", 1)):
+                (files / name).write_bytes(damage)
+                self.daemon.stop()  # nothing is remembered
+                self.start()
+                self.assertEqual(self.results(job), summary, name)
+                self.assertEqual(self.daemon.get(f"/jobs/{job}/realizations/0/field").json, field, name)
+                self.assertEqual(self.daemon.get(f"/jobs/{job}/histogram").json["done"], 4, name)
+                self.assertEqual(self.daemon.post(f"/jobs/{job}/retry").status, 200, name)
+                self.assertEqual(self.daemon.wait_for(job)["realizations"]["done"], 4)
+                if name not in ("study.json",):  # which holds seconds
+                    self.assertEqual((files / name).read_bytes(), whole[name], name)
+        (files / "job.json").write_text("")
+        self.flip(files / "case.resolved.json", b"1.0", b"1.5")
+        self.assertIn("lost", self.problem(self.daemon.post(f"/jobs/{job}/retry"), 409)["detail"])
+        for name in ("job.json", "case.resolved.json"):
+            (files / name).write_bytes(whole[name])
+        self.daemon.post(f"/jobs/{job}/extend", {"realizations": 1})
+        self.assertEqual(self.daemon.wait_for(job)["realizations"]["done"], 5)
+
+    def test_a_job_whose_directory_is_removed_stops_and_goes_on_once_it_is_back(self):
+        self.start()
+        job = self.daemon.submit(study(30, spacing=0.8, end=1.5))
+        self.wait_for_some(job)
+        files, away = self.job_files(job), self.dir / "away"
+        files.rename(away)
+        info = self.daemon.wait_for(job)
+        self.assertEqual(info["status"], "failed")
+        self.assertIn("case.resolved.json is missing", info["message"])
+        self.assertFalse(files.exists())
+        self.assertEqual(info["realizations"]["failed"], 0)
+        self.problem(self.daemon.post(f"/jobs/{job}/retry"), 409)
+        self.daemon.stop()
+        self.start()
+        self.assertIn("job_directory_missing", self.daemon.log_text())
+        away.rename(files)
+        self.assertEqual(self.daemon.post(f"/jobs/{job}/retry").status, 200)
+        self.assertEqual(self.daemon.wait_for(job)["realizations"], {"planned": 30, "done": 30, "failed": 0})
+
+    def test_statistics_that_could_not_be_written(self):
+        self.start()
+        job = self.daemon.submit(study(8, spacing=0.8, end=1.5))
+        (self.job_files(job) / "study.json").mkdir()
+        info = self.daemon.wait_for(job)
+        self.assertEqual(info["status"], "failed")
+        self.assertIn("study.json", info["message"])
+        (self.job_files(job) / "study.json").rmdir()
+        self.assertEqual(self.daemon.post(f"/jobs/{job}/retry").status, 200)
+        self.assertEqual(self.daemon.wait_for(job)["status"], "successful")
+        self.assertEqual(self.results(job)["realizations"]["done"], 8)
+
+
 if __name__ == "__main__":
-    main({"Keeping": Keeping})
+    main({"Keeping": Keeping, "Repair": Repair})
