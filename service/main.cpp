@@ -14,6 +14,7 @@
 #include "http/service.hpp"
 #include "jobs/backup.hpp"
 #include "jobs/orphans.hpp"
+#include "jobs/reserve.hpp"
 #include "options.hpp"
 #include "support/files.hpp"
 #include "support/standard_output.hpp"
@@ -75,16 +76,20 @@ class ClaimedData {
   FileDescriptor lock_, workers_lock_;
 };
 
-talus::service::Store open_store(const Config& config) {
+std::unique_ptr<talus::service::Store> open_store(const Config& config) {
   const DataDirectory data{config.data};
-  return {data.database(), data.jobs(), system_now,
-          std::chrono::duration_cast<std::chrono::milliseconds>(config.lease).count()};
+  const auto lease = std::chrono::duration_cast<std::chrono::milliseconds>(config.lease).count();
+  const auto open = [&] {
+    return std::make_unique<talus::service::Store>(data.database(), data.jobs(), system_now, lease);
+  };
+  return with_reserve(data, open);
 }
 
 int adopt(const Config& config) {
   const DataDirectory data{config.data};
   const ClaimedData claimed(data);
-  talus::service::Store store = open_store(config);
+  const auto opened = open_store(config);
+  talus::service::Store& store = *opened;
   put_orphans_aside(data, store.job_ids());
   for (const Adoption& of : adopt_orphans(data, store))
     std::cout << (of.adopted ? "adopted " : "left ") << of.name << ": " << of.message << "\n";
@@ -105,7 +110,8 @@ int serve(Config config) {
   const Tokens tokens = config.tokens.empty() ? Tokens() : Tokens(config.tokens);
   const DataDirectory data{config.data};
   const ClaimedData claimed(data);
-  talus::service::Store store = open_store(config);
+  const auto opened = open_store(config);
+  talus::service::Store& store = *opened;
   Scheduler scheduler(config, store);
   Jobs jobs(config, store, scheduler);
   std::atomic<bool> stopping{false};

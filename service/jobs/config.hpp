@@ -61,6 +61,7 @@ struct DataDirectory {
   std::filesystem::path jobs() const { return root / "jobs"; }
   std::filesystem::path scratch() const { return root / "scratch"; }  ///< emptied at start
   std::filesystem::path slurm() const { return root / "slurm"; }
+  std::filesystem::path reserve() const { return root / "reserve"; }  ///< disk space for deleting jobs
   std::filesystem::path orphans() const { return root / "orphans"; }  ///< directories that the queue did not know
   /// The directory of one job: that of a `talus study`, so that every subcommand of talus reads it.
   std::filesystem::path job(const std::string& id) const { return jobs() / id; }

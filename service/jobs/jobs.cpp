@@ -6,6 +6,7 @@
 #include "base/digest.hpp"
 #include "jobs/job_record.hpp"
 #include "jobs/repair.hpp"
+#include "jobs/reserve.hpp"
 #include "support/csv.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
@@ -249,7 +250,7 @@ std::optional<Job> Jobs::submit_echo(const Submission& submission, const Store::
 }
 
 void Jobs::dismiss(const Job& job) {
-  store_.dismiss(job.number);
+  with_reserve(data_, [&] { store_.dismiss(job.number); });
   scheduler_.wake(job.number);
 }
 

@@ -145,13 +145,22 @@ std::vector<Adoption> adopt_orphans(const DataDirectory& data, Store& store) {
   return all;
 }
 
-void complete_job_records(const DataDirectory& data, Store& store) {
+void check_job_records(const DataDirectory& data, Store& store) {
   store.visit_studies([&](const Job& job) {
     const fs::path directory = data.job(job.id);
-    if (!fs::exists(StudyPaths{directory}.resolved_case()))
+    if (!fs::exists(StudyPaths{directory}.resolved_case())) {
       log_error("job_directory_missing", {{"job", job.id}, {"directory", directory.string()}});
-    else if (!fs::exists(job_record_path(directory)))
-      write_job_record(directory, job, job.created);
+      return;
+    }
+    try {
+      if (const std::optional<JobRecord> record = find_job_record(directory)) {
+        if (store.restore(job, record->job)) log_error("damaged_row", {{"what", "job " + job.id}});
+      } else {
+        write_job_record(directory, job, job.created);
+      }
+    } catch (const IoError& e) {
+      log_error("job_record", {{"job", job.id}, {"why", e.what()}});
+    }
   });
 }
 

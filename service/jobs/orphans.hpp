@@ -32,8 +32,9 @@ struct Adoption {
 /// @throws StorageError, IoError, std::filesystem::filesystem_error
 std::vector<Adoption> adopt_orphans(const DataDirectory& data, Store& store);
 
-/// Writes the job.json of jobs that were submitted before there was one, and logs jobs whose directory is missing.
-/// @throws StorageError, IoError
-void complete_job_records(const DataDirectory& data, Store& store);
+/// At start: writes the job.json of jobs that have none, restores rows of the queue that differ from theirs, and logs
+/// these and jobs whose directory is missing.
+/// @throws StorageError
+void check_job_records(const DataDirectory& data, Store& store);
 
 }  // namespace talus::service

@@ -6,6 +6,7 @@
 #include "executor/slurm.hpp"
 #include "jobs/orphans.hpp"
 #include "jobs/repair.hpp"
+#include "jobs/reserve.hpp"
 #include "study/estimator.hpp"
 #include "support/files.hpp"
 #include "support/text.hpp"
@@ -67,9 +68,13 @@ void Scheduler::count(const RunEvent& event) {
 }
 
 void Scheduler::start() {
-  put_orphans_aside(data_, store_.job_ids());
-  complete_job_records(data_, store_);
-  const std::int64_t requeued = store_.requeue_all();
+  make_reserve(data_);
+  const std::int64_t requeued = with_reserve(data_, [&] {
+    put_orphans_aside(data_, store_.job_ids());
+    for (const std::string& what : store_.repair_rows()) log_error("damaged_row", {{"what", what}});
+    check_job_records(data_, store_);
+    return store_.requeue_all();
+  });
   if (requeued > 0) log_info("requeued", {{"runs", requeued}, {"why", "an earlier talusd held them"}});
   thread_ = std::thread([this] { loop(); });
 }
@@ -111,10 +116,20 @@ void Scheduler::loop() {
       if (!in_trouble_) log_error("scheduler_waits", {{"why", e.what()}});
       in_trouble_ = true;
       read_queue_ = true;
+      free_space();
       std::this_thread::sleep_for(trouble_interval);
     }
   }
   end_runs();
+}
+
+/// On a full disk nothing else can be done.
+void Scheduler::free_space() {
+  try {
+    if (removing_ && Steady::now() >= next_removal_) remove_dismissed();
+  } catch (const std::exception& e) {
+    log_error("not_removed_yet", {{"why", e.what()}});
+  }
 }
 
 void Scheduler::tick() {
@@ -135,6 +150,7 @@ void Scheduler::tick() {
   }
   if (Steady::now() < next_reasons_) return;
   next_reasons_ = Steady::now() + reasons_interval;
+  make_reserve(data_);
   note_pending_reasons();
 }
 

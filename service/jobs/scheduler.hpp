@@ -81,6 +81,7 @@ class Scheduler {
   void note_pending_reasons();
   void run_echo();
   void remove_dismissed();
+  void free_space();
   bool room_on_disk() const;
 
   const Config& config_;

@@ -71,6 +71,8 @@ Database::Database(std::filesystem::path path) : path_(std::move(path)), writer_
   });
   migrate();
   translated([&] {
+    // The histograms come from this index alone. Unlike the pages of tables, its content follows from other pages.
+    if (writer_.execAndGet("PRAGMA integrity_check(1)").getString() != "ok") writer_.exec("REINDEX");
     for (int i = 0; i < reader_count; ++i) {
       readers_.push_back(std::make_unique<SQLite::Database>(path_.string(), SQLite::OPEN_READWRITE, busy_timeout_ms));
       readers_.back()->exec("PRAGMA query_only = ON");

@@ -60,6 +60,11 @@ class Store final : public talus::Store {
   bool finish(std::int64_t job, JobState state, const std::string& message);
   /// Dismisses a job in any state and deletes its runs, so no claim on them is current any more.
   void dismiss(std::int64_t job);
+  /// At start: queues runs again whose record does not agree with its checksum, and counts the runs of jobs anew whose
+  /// counts are wrong. Reads every run once. @return what was damaged
+  std::vector<std::string> repair_rows();
+  /// Makes what submission fixed of a job that of `right`. @return false where it is
+  bool restore(const Job& job, const NewJob& right);
   /// Requeues runs that are done, since their results are lost, and opens the job again.
   void requeue_lost(std::int64_t job, std::span<const RunKey> lost);
   /// Requeues the failed runs. @return how many

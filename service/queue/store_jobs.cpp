@@ -9,17 +9,6 @@ namespace {
 
 constexpr Milliseconds key_lifetime = Milliseconds{7} * 24 * 3600 * 1000;
 
-/// Queues the runs of a job that it does not have yet, in the order of their ranks.
-void insert_runs(SQLite::Database& db, std::int64_t job, std::int64_t replicates, std::int64_t realizations) {
-  SQLite::Statement insert(
-      db, "INSERT INTO runs (job, level, kind, idx, rank) VALUES (?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");
-  for (std::int64_t rank = 0; rank < replicates + realizations; ++rank) {
-    Binder(insert) << job << run_of_rank(rank, replicates) << rank;
-    insert.exec();
-    insert.reset();
-  }
-}
-
 /// Deletes old responses and stores this one. @return false where there is one for its key already
 bool store_response(SQLite::Database& db, const StoredResponse& response, Milliseconds now) {
   execute(db, "DELETE FROM stored_responses WHERE created < ?", now - key_lifetime);
@@ -28,11 +17,6 @@ bool store_response(SQLite::Database& db, const StoredResponse& response, Millis
                  "VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
                  response.subject, response.key, response.body_hash, response.status, response.location, response.body,
                  now) == 1;
-}
-
-std::optional<Job> one_job(SQLite::Database& db, std::int64_t number) {
-  const std::vector<Job> found = select_jobs(db, "number = ?", number);
-  return found.empty() ? std::nullopt : std::optional(found.front());
 }
 
 /// Inserts a job and queues its runs.
@@ -52,16 +36,22 @@ Job insert_job(SQLite::Database& db, const NewJob& job, Milliseconds created, Mi
 /// Thrown inside a transaction so that it is rolled back.
 struct KeyTaken {};
 
-/// The counts of a job from its runs.
-constexpr const char* counted_anew =
-    "done = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done'), "
-    "sound = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done' AND verdict = 'sound'), "
-    "doubtful = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done' AND verdict = 'doubtful'), "
-    "replicates_ended = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 1 AND state IN ('done', 'failed'))";
-
-constexpr const char* reopened = "state = 'running', finished = NULL, message = ''";
-
 }  // namespace
+
+std::optional<Job> one_job(SQLite::Database& db, std::int64_t number) {
+  const std::vector<Job> found = select_jobs(db, "number = ?", number);
+  return found.empty() ? std::nullopt : std::optional(found.front());
+}
+
+void insert_runs(SQLite::Database& db, std::int64_t job, std::int64_t replicates, std::int64_t realizations) {
+  SQLite::Statement insert(
+      db, "INSERT INTO runs (job, level, kind, idx, rank) VALUES (?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");
+  for (std::int64_t rank = 0; rank < replicates + realizations; ++rank) {
+    Binder(insert) << job << run_of_rank(rank, replicates) << rank;
+    insert.exec();
+    insert.reset();
+  }
+}
 
 std::optional<Job> Store::create(const NewJob& job, const Response& response,
                                  const std::optional<Milliseconds>& created) try {

@@ -28,12 +28,13 @@ void count_ended(SQLite::Database& db, const Claim& claim, const char* column, V
 bool record_done(SQLite::Database& db, const Claim& claim, const Record& result, Milliseconds now) {
   std::string numbers;
   visit_numbers(result, [&](const char* key, const char*, auto) { numbers += key + std::string(" = ?, "); });
-  SQLite::Statement update(db, "UPDATE runs SET state = 'done', " + numbers +
-                                   "digest = ?, verdict = ?, verdict_reasons = ?, lower_bounds = ? WHERE " +
-                                   is_current_claim);
+  SQLite::Statement update(
+      db, "UPDATE runs SET state = 'done', " + numbers +
+              "digest = ?, verdict = ?, verdict_reasons = ?, lower_bounds = ?, checksum = ? WHERE " + is_current_claim);
   Binder values(update);
   visit_numbers(result, [&](const char*, const char*, auto value) { values << value; });
-  values << result.digest << result.verdict << result.objections << result.lower_bounds << claim;
+  values << result.digest << result.verdict << result.objections << result.lower_bounds
+         << checksum_of(claim.study, claim.key, result) << claim;
   if (update.exec() != 1) return false;
   count_ended(db, claim, "done", result.verdict, now);
   return true;
