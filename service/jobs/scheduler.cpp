@@ -117,7 +117,7 @@ void Scheduler::loop() {
       in_trouble_ = true;
       read_queue_ = true;
       free_space();
-      std::this_thread::sleep_for(trouble_interval);
+      wait_for(trouble_interval);
     }
   }
   end_runs();

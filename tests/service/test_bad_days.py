@@ -82,7 +82,7 @@ class BadDays(ServiceTest):
             deadline = time.monotonic() + 30
             while (data / "jobs" / job).exists() and time.monotonic() < deadline:
                 time.sleep(0.1)
-            self.assertFalse((data / "jobs" / job).exists())
+            self.assertFalse((data / "jobs" / job).exists(), (place / "talusd.log").read_text())
             self.assertEqual(self.daemon.get(f"/jobs/{job}").json["status"], "dismissed")
             (place / "ballast").unlink()
             while not (data / "reserve").exists() and time.monotonic() < deadline:

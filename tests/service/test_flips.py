@@ -10,23 +10,24 @@ import subprocess
 
 from daemon import TALUS, ServiceTest, case, main
 
-FLIPS = int(os.environ.get("TALUS_FLIPS", "60"))
+FLIPS = int(os.environ.get("TALUS_FLIPS", "200"))
 
 
 class Flips(ServiceTest):
     """One bit at a time."""
 
     def talus(self, *arguments):
-        return subprocess.run([TALUS, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+        return subprocess.run([TALUS, *map(str, arguments)], capture_output=True, encoding="utf-8",
+                              errors="replace", timeout=120)
 
     def numbers(self):
         """What a reader of the study takes from it: the tables and the summary without seconds."""
         tables = []
         for name in ("realizations.csv", "noise_floor.csv"):
-            lines = (self.out / name).read_text().splitlines()
+            lines = (self.out / name).read_text(errors="replace").splitlines()
             column = lines[0].split(",").index("wall_clock_s")
             tables.append([[cell for i, cell in enumerate(line.split(",")) if i != column][:-1] for line in lines])
-        summary = json.loads((self.out / "study.json").read_text())
+        summary = json.loads((self.out / "study.json").read_text(errors="replace"))
         for seconds in ("effort", "checksum"):
             summary.pop(seconds)
         return tables, summary
@@ -55,9 +56,7 @@ class Flips(ServiceTest):
                 self.assertEqual(self.numbers(), whole, place)
             else:
                 self.assertIn(path.name, study.stderr, place)
-            made_again = study.returncode == 0 and "running it again" not in study.stderr
-            what["refused, naming the file" if study.returncode else "made again or unharmed" if made_again else
-                 "run again"] += 1
+            what["refused, naming the file" if study.returncode else "repaired or unharmed"] += 1
             for file, right in files.items():
                 file.write_bytes(right)
         print(f"\n{FLIPS} flipped bits, 0 wrong numbers: {dict(what)}", flush=True)

@@ -93,9 +93,9 @@ TEST(Checksum, TellsADamagedFileFromAWholeOne) {
   const test::TemporaryDirectory directory;
   const auto read = [&](const std::string& text) {
     std::ofstream(directory / "a.json", std::ios::binary) << text;
-    Json read = read_json(directory / "a.json", 1 << 16);
-    read.erase("checksum");
-    return read;
+    Json found = read_json(directory / "a.json", 1 << 16);
+    found.erase("checksum");
+    return found;
   };
   EXPECT_EQ(read(whole), document);
   EXPECT_EQ(read(document.dump(2) + "\n"), document);  // of an earlier version
