@@ -151,6 +151,29 @@ class Keeping(Kept):
             self.assertEqual(self.daemon.wait_for(job)["status"], "successful")
             self.assertEqual(self.results(job), summary)
 
+    def test_a_damaged_write_ahead_log(self):
+        """SQLite falls back to what came before the damage, here to a queue without jobs."""
+        self.start()
+        jobs = [self.daemon.submit(study(2, seed=seed)) for seed in (7, 8)]
+        for job in jobs:
+            self.daemon.wait_for(job)
+        summaries = [self.results(job) for job in jobs]
+        self.daemon.kill()
+        log = self.daemon.data / "queue.sqlite-wal"
+        content = bytearray(log.read_bytes())
+        self.assertGreater(len(content), 4096)
+        content[100] ^= 1  # in the first frame
+        log.write_bytes(content)
+        self.start()
+        self.assertEqual(self.daemon.get("/jobs").json["jobs"], [])
+        self.assertEqual(self.daemon.get("/readyz").json["orphans"], 2)
+        self.daemon.stop()
+        self.assertEqual(talusd("--data", self.daemon.data, "--adopt").count("adopted"), 2)
+        self.start()
+        for job, summary in zip(jobs, summaries):
+            self.assertEqual(self.daemon.wait_for(job)["status"], "successful")
+            self.assertEqual(self.results(job), summary)
+
     def test_a_backup_is_restored_with_jobs_before_and_after_it(self):
         self.start()
         data, backup = self.daemon.data, self.dir / "backup"
