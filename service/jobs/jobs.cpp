@@ -8,6 +8,7 @@
 #include "jobs/repair.hpp"
 #include "jobs/reserve.hpp"
 #include "support/csv.hpp"
+#include "support/digest.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
 #include "support/text.hpp"
@@ -78,6 +79,20 @@ void prune(const fs::path& directory) {
   std::sort(files.rbegin(), files.rend());
   std::error_code ignored;
   for (std::size_t i = profiles_kept; i < files.size(); ++i) fs::remove(files[i].second, ignored);
+}
+
+/// The last line of a kept profile.
+std::string checksum_line(const std::string& text) { return hex_digits(fnv1a64(text)) + "\n"; }
+
+/// The text of a kept profile; nothing where there is none, or it is damaged.
+std::optional<std::string> find_kept(const fs::path& file) {
+  std::optional<std::string> text = find_file(file, max_bytes);
+  const std::size_t length = checksum_line("").size();
+  if (!text || text->size() < length) return std::nullopt;
+  const std::string line = text->substr(text->size() - length);
+  text->resize(text->size() - length);
+  if (line != checksum_line(*text)) return std::nullopt;
+  return text;
 }
 
 /// @throws Refusal internal unless the command succeeded
@@ -342,7 +357,7 @@ std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
   fs::create_directories(study.profiles());
   const std::string extension = svg ? ".svg" : ".json";
   const fs::path kept = study.profiles() / (std::to_string(index) + extension);
-  if (auto text = find_file(kept, max_bytes)) return *text;
+  if (auto text = find_kept(kept)) return *text;
   const TemporaryDirectory scratch = scratch_directory();
   const fs::path out = scratch / "run", file = scratch / ("profile" + extension);
   check(run_once({case_file, "--realization", std::to_string(index), "--seed", std::to_string(job.seed), "--out", out},
@@ -350,7 +365,7 @@ std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
         "the profile");
   check(run_command({"profile", out, "--out", file}, seconds(60)), "the profile");
   const std::string text = read_file(file, max_bytes);
-  write_file_atomically(kept, text);
+  write_file_atomically(kept, text + checksum_line(text));
   prune(study.profiles());
   return text;
 }

@@ -359,6 +359,18 @@ class Repair(Kept):
         self.daemon.post(f"/jobs/{job}/extend", {"realizations": 1})
         self.assertEqual(self.daemon.wait_for(job)["realizations"]["done"], 5)
 
+    def test_a_damaged_profile_is_made_again(self):
+        self.start()
+        job = self.daemon.submit(study(1, noise_floor_replicates=0))
+        self.daemon.wait_for(job)
+        path, kept = f"/jobs/{job}/realizations/0/profile", self.job_files(job) / "profiles/0.json"
+        profile = self.daemon.get(path).body
+        self.assertEqual(self.daemon.get(path).body, profile)
+        self.flip(kept, b'"x_m":[', b'"x_m":[9')
+        self.assertEqual(self.daemon.get(path).body, profile)
+        kept.write_text("")
+        self.assertEqual(self.daemon.get(path).body, profile)
+
     def test_a_job_whose_directory_is_removed_stops_and_goes_on_once_it_is_back(self):
         self.start()
         job = self.daemon.submit(study(30, spacing=0.8, end=1.5))
