@@ -12,8 +12,12 @@
 #include "base/json.hpp"
 #include "http/server.hpp"
 #include "http/service.hpp"
+#include "jobs/backup.hpp"
+#include "jobs/orphans.hpp"
+#include "jobs/reserve.hpp"
 #include "options.hpp"
 #include "support/files.hpp"
+#include "support/standard_output.hpp"
 
 namespace {
 
@@ -54,22 +58,60 @@ FileDescriptor wait_for_lock(const std::filesystem::path& path, bool inherited, 
   }
 }
 
+/// The data directory, made if need be, for this process alone.
+class ClaimedData {
+ public:
+  /// @throws IoError where another talusd or its workers use it
+  explicit ClaimedData(const DataDirectory& data) {
+    for (const auto& directory : {data.root, data.jobs(), data.scratch()})
+      std::filesystem::create_directories(directory);
+    lock_ = wait_for_lock(data.lock(), false, std::chrono::seconds(1), "another talusd is using " + data.root.string());
+    // The workers of a killed talusd end a moment after it; until then they may still write into the data directory.
+    workers_lock_ =
+        wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
+                      "workers of an earlier talusd still run in " + data.root.string() + "; stop them first");
+  }
+
+ private:
+  FileDescriptor lock_, workers_lock_;
+};
+
+std::unique_ptr<talus::service::Store> open_store(const Config& config) {
+  const DataDirectory data{config.data};
+  const auto lease = std::chrono::duration_cast<std::chrono::milliseconds>(config.lease).count();
+  const auto open = [&] {
+    return std::make_unique<talus::service::Store>(data.database(), data.jobs(), system_now, lease);
+  };
+  return with_reserve(data, open);
+}
+
+int adopt(const Config& config) {
+  const DataDirectory data{config.data};
+  const ClaimedData claimed(data);
+  const auto opened = open_store(config);
+  talus::service::Store& store = *opened;
+  put_orphans_aside(data, store.job_ids());
+  for (const Adoption& of : adopt_orphans(data, store))
+    std::cout << (of.adopted ? "adopted " : "left ") << of.name << ": " << of.message << "\n";
+  return static_cast<int>(Exit::ok);
+}
+
+int back_up_data(const Config& config, const std::filesystem::path& target) {
+  const BackupReport report = back_up({config.data}, target);
+  for (const std::string& id : report.missing) std::cerr << "talusd: job " << id << " has no directory\n";
+  std::cout << target.string() << ": " << report.jobs << " jobs, " << report.files << " files, " << (report.bytes >> 20)
+            << " MiB\n";
+  return static_cast<int>(Exit::ok);
+}
+
 int serve(Config config) {
   const sigset_t stop_signals = hold_stop_signals();
   raise_file_limit();
-  ::umask(027);  // the data of jobs are not readable for every user of this machine
   const Tokens tokens = config.tokens.empty() ? Tokens() : Tokens(config.tokens);
   const DataDirectory data{config.data};
-  for (const auto& directory : {data.root, data.jobs(), data.scratch()}) std::filesystem::create_directories(directory);
-  const FileDescriptor lock =
-      wait_for_lock(data.lock(), false, std::chrono::seconds(1), "another talusd is using " + data.root.string());
-  // The workers of a killed talusd end a moment after it; until then they may still write into the data directory.
-  const FileDescriptor workers_lock =
-      wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
-                    "workers of an earlier talusd still run in " + data.root.string() + "; stop them first");
-
-  talus::service::Store store(data.database(), data.jobs(), system_now,
-                              std::chrono::duration_cast<std::chrono::milliseconds>(config.lease).count());
+  const ClaimedData claimed(data);
+  const auto opened = open_store(config);
+  talus::service::Store& store = *opened;
   Scheduler scheduler(config, store);
   Jobs jobs(config, store, scheduler);
   std::atomic<bool> stopping{false};
@@ -106,20 +148,24 @@ int serve(Config config) {
   server->stop();
   http.join();
   log_info("stopped");
+  std::cout.clear();  // a daemon whose standard output is closed has done its work all the same
+  std::clearerr(stdout);
   return static_cast<int>(Exit::ok);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// The program, but for the check of its output. @return the exit code
+int run_program(int argc, char** argv) {
   const Options options = read_options(argc, argv);
   if (options.exit) return *options.exit;
+  ::umask(027);  // the data of jobs are not readable for every user of this machine
   try {
     if (!options.new_token.empty()) {
       const auto [token, line] = new_token(options.new_token[0], options.new_token[1]);
       std::cout << "token: " << token << "\nline for the tokens file: " << line << "\n";
       return static_cast<int>(Exit::ok);
     }
+    if (options.adopt) return adopt(options.config);
+    if (!options.backup.empty()) return back_up_data(options.config, options.backup);
     return serve(options.config);
   } catch (const std::exception& e) {
     std::cerr << "talusd: " << e.what() << "\n";
@@ -128,3 +174,7 @@ int main(int argc, char** argv) {
     return static_cast<int>(io ? Exit::io : Exit::internal);
   }
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return checked_output(run_program(argc, argv), "talusd"); }

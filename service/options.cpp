@@ -45,7 +45,6 @@ void complete(Config& config, const RawOptions& raw) {
   config.quotas.disk_bytes = static_cast<std::uint64_t>(raw.min_disk_mib * mib);
   // A negative value, no limit, is for sanitizers, which reserve terabytes of address space.
   if (raw.memory_mib != 0.0) config.memory_bytes = static_cast<std::uint64_t>(std::max(0.0, raw.memory_mib * mib));
-  if (config.data.empty()) throw std::runtime_error("--data DIR is required");
   split_listen(raw.listen, config);
   if (!is_loopback(config.address) && config.tokens.empty())
     throw std::runtime_error("--listen " + config.address +
@@ -56,7 +55,6 @@ void complete(Config& config, const RawOptions& raw) {
                              (error ? ": " + error.message() : "") + "; give --talus");
   if (raw.executor == "slurm")
     config.slurm = raw.slurm.empty() ? executor::SlurmConfig{} : executor::read_slurm_config(raw.slurm);
-  config.data = fs::absolute(config.data);
   config.program = fs::absolute(config.program);
 }
 
@@ -111,6 +109,9 @@ Options read_options(int argc, char** argv) {
   with_default("--max-jobs-each", config.quotas.open_jobs_of_one, "maximum number of open jobs per subject");
   with_default("--min-disk", raw.min_disk_mib, "free disk space below which no job is accepted [MiB]")
       ->check(CLI::NonNegativeNumber);
+  app.add_option("--backup", options.backup,
+                 "copy the queue and all jobs to this new directory, also while talusd runs, then exit");
+  app.add_flag("--adopt", options.adopt, "take back jobs that the queue has lost from DATA/orphans, then exit");
   app.add_option("--new-token", options.new_token, "print a new token and its line for the token file, then exit")
       ->expected(2)
       ->type_name("submit|read SUBJECT");
@@ -123,6 +124,9 @@ Options read_options(int argc, char** argv) {
   }
   if (!options.new_token.empty()) return options;
   try {
+    if (config.data.empty()) throw std::runtime_error("--data DIR is required");
+    config.data = fs::absolute(config.data);
+    if (options.adopt || !options.backup.empty()) return options;
     complete(config, raw);
   } catch (const std::runtime_error& e) {
     std::cerr << "talusd: " << e.what() << "\n";

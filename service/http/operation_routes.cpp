@@ -1,6 +1,7 @@
 // For the operator: liveness, readiness, metrics.
 
 #include "http/service.hpp"
+#include "jobs/orphans.hpp"
 #include "support/files.hpp"
 
 namespace talus::service {
@@ -14,7 +15,12 @@ Answer ready(Exchange& exchange) {
   if (service.stopping()) throw Refusal(reason::unavailable, "talusd is stopping");
   if (disk_left(service.config.data) < service.config.quotas.disk_bytes)
     throw Refusal(reason::unavailable, "the disk has less free space than --min-disk requires");
-  return json_answer({{"status", "ready"}});
+  Json status = {{"status", "ready"}};
+  if (const std::size_t orphans = count_orphans({service.config.data}); orphans > 0) {
+    status["orphans"] = orphans;
+    status["detail"] = "DATA/orphans holds what the queue does not know; stop talusd and take it back with --adopt";
+  }
+  return json_answer(status);
 }
 
 /// One sample of a metric: what follows the name of its family, and the value.
@@ -43,31 +49,30 @@ Answer metrics(Exchange& exchange) {
   for (std::size_t i = 0; i < counts.jobs.size(); ++i)
     jobs.push_back({label("status", job_words[i]), static_cast<double>(counts.jobs[i])});
   const auto queued = static_cast<double>(counts.runs[static_cast<std::size_t>(RunState::queued)]);
-  return {
-      .type = "text/plain; version=0.0.4",
-      .body =
-          family("talus_jobs", "gauge", "Jobs by status.", jobs) +
-          family("talus_queue_depth", "gauge", "Runs waiting for a worker.", {{"", queued}}) +
-          family("talus_workers", "gauge", "Workers.",
-                 {{label("state", "all"), static_cast<double>(service.config.workers)},
-                  {label("state", "busy"), static_cast<double>(runs.running)}}) +
-          family("talus_realizations_total", "counter", "Runs ended since talusd started, by outcome.",
-                 {{label("outcome", "done"), done},
-                  {label("outcome", "failed"), ended(Kind::failed)},
-                  {label("outcome", "crashed_and_requeued"), ended(Kind::crashed)},
-                  {label("outcome", "given_back"), ended(Kind::given_back)},
-                  {label("outcome", "stale"), ended(Kind::stale)}}) +
-          family("talus_realization_seconds", "summary", "Wall-clock time of successful runs.",
-                 {{"_sum", static_cast<double>(runs.wall_clock_ms) / 1000.0}, {"_count", done}}) +
-          family("talus_orphans", "gauge", "Directories of unknown jobs that were moved to DATA/orphans at start.",
-                 {{"", static_cast<double>(runs.orphans)}}) +
-          family("talus_disk_left_bytes", "gauge", "Free disk space of the data directory.",
-                 {{"", static_cast<double>(disk_left(service.config.data))}}) +
-          family("talus_http_requests_total", "counter", "Requests answered.",
-                 {{"", static_cast<double>(service.requests)}}) +
-          family("talus_http_failures_total", "counter", "Requests answered with 5xx.",
-                 {{"", static_cast<double>(service.failures)}}) +
-          family("talus_event_streams", "gauge", "Open event streams.", {{"", static_cast<double>(service.streams)}})};
+  return {.type = "text/plain; version=0.0.4",
+          .body = family("talus_jobs", "gauge", "Jobs by status.", jobs) +
+                  family("talus_queue_depth", "gauge", "Runs waiting for a worker.", {{"", queued}}) +
+                  family("talus_workers", "gauge", "Workers.",
+                         {{label("state", "all"), static_cast<double>(service.config.workers)},
+                          {label("state", "busy"), static_cast<double>(runs.running)}}) +
+                  family("talus_realizations_total", "counter", "Runs ended since talusd started, by outcome.",
+                         {{label("outcome", "done"), done},
+                          {label("outcome", "failed"), ended(Kind::failed)},
+                          {label("outcome", "crashed_and_requeued"), ended(Kind::crashed)},
+                          {label("outcome", "given_back"), ended(Kind::given_back)},
+                          {label("outcome", "stale"), ended(Kind::stale)}}) +
+                  family("talus_realization_seconds", "summary", "Wall-clock time of successful runs.",
+                         {{"_sum", static_cast<double>(runs.wall_clock_ms) / 1000.0}, {"_count", done}}) +
+                  family("talus_orphans", "gauge", "Entries of DATA/orphans: what the queue does not know.",
+                         {{"", static_cast<double>(count_orphans({service.config.data}))}}) +
+                  family("talus_disk_left_bytes", "gauge", "Free disk space of the data directory.",
+                         {{"", static_cast<double>(disk_left(service.config.data))}}) +
+                  family("talus_http_requests_total", "counter", "Requests answered.",
+                         {{"", static_cast<double>(service.requests)}}) +
+                  family("talus_http_failures_total", "counter", "Requests answered with 5xx.",
+                         {{"", static_cast<double>(service.failures)}}) +
+                  family("talus_event_streams", "gauge", "Open event streams.",
+                         {{"", static_cast<double>(service.streams)}})};
 }
 
 }  // namespace

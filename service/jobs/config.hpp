@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "executor/slurm_config.hpp"
 
@@ -60,12 +61,17 @@ struct DataDirectory {
   std::filesystem::path jobs() const { return root / "jobs"; }
   std::filesystem::path scratch() const { return root / "scratch"; }  ///< emptied at start
   std::filesystem::path slurm() const { return root / "slurm"; }
+  std::filesystem::path reserve() const { return root / "reserve"; }  ///< disk space for deleting jobs
   std::filesystem::path orphans() const { return root / "orphans"; }  ///< directories that the queue did not know
   /// The directory of one job: that of a `talus study`, so that every subcommand of talus reads it.
   std::filesystem::path job(const std::string& id) const { return jobs() / id; }
   /// The directory of a job until its submission is complete; removed at start.
-  std::filesystem::path unfinished(const std::string& id) const { return jobs() / (unfinished_prefix + id); }
-  static constexpr const char* unfinished_prefix = "new-";
+  std::filesystem::path unfinished(const std::string& id) const {
+    return jobs() / (std::string(unfinished_prefix) + id);
+  }
+  static constexpr std::string_view unfinished_prefix = "new-";
+  static constexpr std::size_t id_bytes = 16;      ///< of a job's random id, which has two hexadecimal digits a byte
+  static constexpr std::size_t scratch_bytes = 8;  ///< of the random name of a directory in scratch()
 };
 
 }  // namespace talus::service

@@ -4,7 +4,11 @@
 #include <cmath>
 
 #include "base/digest.hpp"
+#include "jobs/job_record.hpp"
+#include "jobs/repair.hpp"
+#include "jobs/reserve.hpp"
 #include "support/csv.hpp"
+#include "support/digest.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
 #include "support/text.hpp"
@@ -77,6 +81,20 @@ void prune(const fs::path& directory) {
   for (std::size_t i = profiles_kept; i < files.size(); ++i) fs::remove(files[i].second, ignored);
 }
 
+/// The last line of a kept profile.
+std::string checksum_line(const std::string& text) { return hex_digits(fnv1a64(text)) + "\n"; }
+
+/// The text of a kept profile; nothing where there is none, or it is damaged.
+std::optional<std::string> find_kept(const fs::path& file) {
+  std::optional<std::string> text = find_file(file, max_bytes);
+  const std::size_t length = checksum_line("").size();
+  if (!text || text->size() < length) return std::nullopt;
+  const std::string line = text->substr(text->size() - length);
+  text->resize(text->size() - length);
+  if (line != checksum_line(*text)) return std::nullopt;
+  return text;
+}
+
 /// @throws Refusal internal unless the command succeeded
 void check(const CommandOutput& output, const std::string& what) {
   if (output.ok()) return;
@@ -131,7 +149,9 @@ CommandOutput Jobs::run(const Command& command, seconds limit, Semaphore& slots,
   return output;
 }
 
-TemporaryDirectory Jobs::scratch_directory() const { return TemporaryDirectory(data_.scratch() / random_hex(8)); }
+TemporaryDirectory Jobs::scratch_directory() const {
+  return TemporaryDirectory(data_.scratch() / random_hex(DataDirectory::scratch_bytes));
+}
 
 Json Jobs::validate(const Json& document, const std::string& pointer) {
   const TemporaryDirectory scratch = scratch_directory();
@@ -188,8 +208,8 @@ void Jobs::check_size(double particles, double steps, std::int64_t realizations,
   refuse_if_any(faults, reason::quota, "the job exceeds a quota");
 }
 
-std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response) {
-  std::optional<Job> recorded = store_.create(job, response);
+std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response, Milliseconds created) {
+  std::optional<Job> recorded = store_.create(job, response, created);
   if (recorded) scheduler_.wake();
   return recorded;
 }
@@ -199,7 +219,7 @@ std::optional<Job> Jobs::submit_study(const Submission& submission, const Store:
   const StudyInputs study = read_study_inputs(submission.inputs);
   const Json demand = validate(study.document, "/inputs/case");
 
-  NewJob job{.id = random_hex(16), .process = "influence-zone", .subject = submission.subject};
+  NewJob job{.id = random_hex(DataDirectory::id_bytes), .process = "influence-zone", .subject = submission.subject};
   const Json& options = study.document.at("study");
   job.planned = options.value("realizations", std::int64_t{100});
   job.seed =
@@ -222,8 +242,10 @@ std::optional<Job> Jobs::submit_study(const Submission& submission, const Store:
   job.may_stop_early = plan.study.stop_half_width.has_value();
   job.case_hash = plan.of.hash;
   job.inputs = dump({{"quantity", study.quantity}, {"outputs", submission.outputs}, {"raw", submission.raw}});
+  const Milliseconds now = system_now();
+  write_job_record(made.path(), job, now);
   made.move_to(data_.job(job.id));
-  std::optional<Job> recorded = record(job, response);
+  std::optional<Job> recorded = record(job, response, now);
   if (recorded) made.keep();
   return recorded;
 }
@@ -234,30 +256,27 @@ std::optional<Job> Jobs::submit_echo(const Submission& submission, const Store::
                      {"raw", submission.raw},
                      {"pause", submission.inputs.value("pause", 0.0)},
                      {"inputs", submission.inputs}};
-  return record(
-      {.id = random_hex(16), .process = "echo", .subject = submission.subject, .title = "echo", .inputs = dump(kept)},
-      response);
+  return record({.id = random_hex(DataDirectory::id_bytes),
+                 .process = "echo",
+                 .subject = submission.subject,
+                 .title = "echo",
+                 .inputs = dump(kept)},
+                response, system_now());
 }
 
 void Jobs::dismiss(const Job& job) {
-  store_.dismiss(job.number);
-  scheduler_.wake(job.number);
-}
-
-void Jobs::retry(const Job& job, const Store::Response& response) {
-  if (ended(job.state)) check_queue(job.subject);  // it will be open again
-  store_.retry_failed(job.number, response);
+  with_reserve(data_, [&] { store_.dismiss(job.number); });
   scheduler_.wake(job.number);
 }
 
 bool Jobs::extend(const Job& job, std::int64_t more, const Store::Response& response) {
   if (job.may_stop_early) throw Refusal(reason::conflict, "a study that stops by itself cannot be extended");
-  const std::lock_guard one_at_a_time(extending_);  // two at once would both add to the same number
+  const std::lock_guard one_at_a_time(changing_study_);  // two at once would both add to the same number
   const std::int64_t planned = store_.job(job.number)->planned + more;
   ended(job.state) ? check_queue(job.subject) : check_disk();  // an ended one will be open again
   check_size(job.particles, job.steps, planned, "/realizations");
   const StudyPaths directory{data_.job(job.id)};
-  const CommandOutput prepared = prepare(directory.resolved_case(), directory, planned, job.seed);
+  const CommandOutput prepared = prepare(checked_case(data_, job), directory, planned, job.seed);
   if (!prepared.ok())
     throw Refusal(reason::conflict, prepared.err.empty() ? "the study cannot be extended" : prepared.err);
   const bool fresh = store_.extend(job.number, planned, response);
@@ -286,29 +305,36 @@ Json Jobs::distribution(const Job& job, const Measure& quantity, const Bins& bin
   const std::string key =
       job.id + "/" + quantity.key + "/" + std::to_string(bins.count) + "/" + Json(bins.edges).dump();
   return distributions_.get(key, job.version, ended(job.state) ? milliseconds(0) : histogram_age, [&] {
-    std::optional<Plan> plan = find_plan(data_.job(job.id));
-    if (!plan) throw Refusal(reason::internal, "the plan of the job is missing");
-    plan->study.realizations = job.planned;
+    const Plan plan = plan_of(job);
     Json answer =
-        talus::distribution(*plan, quantity, store_.measure_sample(job, quantity, plan->study.stop_half_width), bins);
+        talus::distribution(plan, quantity, store_.measure_sample(job, quantity, plan.study.stop_half_width), bins);
     drop_nulls(answer);
     return answer;
   });
 }
 
-Json Jobs::summary(const Job& job) const {
-  const auto text = find_file(StudyPaths{data_.job(job.id)}.summary(), max_bytes);
-  if (!text) throw Refusal(reason::result_not_ready, "there are no statistics of this job");
-  return Json::parse(*text);
+Json Jobs::summary(const Job& job) {
+  const fs::path file = StudyPaths{data_.job(job.id)}.summary();
+  const auto read = [&] {
+    Json summary = read_json(file, max_bytes);
+    summary.erase("checksum");  // of the file
+    return summary;
+  };
+  try {
+    return read();
+  } catch (const IoError& e) {
+    log_error("made_again", {{"job", job.id}, {"file", file.string()}, {"why", e.what()}});
+  }
+  publish_again(job);
+  return read();
 }
 
 std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
   const TemporaryDirectory scratch = scratch_directory();
   const fs::path file = scratch / (svg ? "field.svg" : "field.csv");
-  const CommandOutput output =
-      run_command({"field", StudyPaths{data_.job(job.id)}.resolved_case(), "--realization", std::to_string(index),
-                   "--seed", std::to_string(job.seed), "--out", file, "--json"},
-                  seconds(60));
+  const CommandOutput output = run_command({"field", checked_case(data_, job), "--realization", std::to_string(index),
+                                            "--seed", std::to_string(job.seed), "--out", file, "--json"},
+                                           seconds(60));
   check(output, "the field");
   const std::string text = read_file(file, max_bytes);
   if (svg) return text;
@@ -327,19 +353,19 @@ std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
 
 std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
   const StudyPaths study{data_.job(job.id)};
+  const fs::path case_file = checked_case(data_, job);
   fs::create_directories(study.profiles());
   const std::string extension = svg ? ".svg" : ".json";
   const fs::path kept = study.profiles() / (std::to_string(index) + extension);
-  if (auto text = find_file(kept, max_bytes)) return *text;
+  if (auto text = find_kept(kept)) return *text;
   const TemporaryDirectory scratch = scratch_directory();
   const fs::path out = scratch / "run", file = scratch / ("profile" + extension);
-  check(run_once({study.resolved_case(), "--realization", std::to_string(index), "--seed", std::to_string(job.seed),
-                  "--out", out},
+  check(run_once({case_file, "--realization", std::to_string(index), "--seed", std::to_string(job.seed), "--out", out},
                  seconds(3600)),
         "the profile");
   check(run_command({"profile", out, "--out", file}, seconds(60)), "the profile");
   const std::string text = read_file(file, max_bytes);
-  write_file_atomically(kept, text);
+  write_file_atomically(kept, text + checksum_line(text));
   prune(study.profiles());
   return text;
 }

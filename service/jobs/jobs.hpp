@@ -26,6 +26,8 @@ class Jobs {
   std::optional<Job> submit_study(const Submission& submission, const Store::Response& response);
   std::optional<Job> submit_echo(const Submission& submission, const Store::Response& response);
   void dismiss(const Job& job);
+  /// Makes damaged and lost files of the job again and requeues the runs that have failed or whose result is lost.
+  /// @throws Refusal conflict where the job cannot go on, since its directory or its case is lost
   void retry(const Job& job, const Store::Response& response);
   /// @return false where another request has used the key meanwhile
   bool extend(const Job& job, std::int64_t more, const Store::Response& response);
@@ -33,7 +35,7 @@ class Jobs {
   /// How a quantity is distributed over the runs done so far, from the records in the database.
   Json distribution(const Job& job, const Measure& quantity, const Bins& bins);
   /// study.json of a job that has ended.
-  Json summary(const Job& job) const;
+  Json summary(const Job& job);
   /// The friction angles before the failure of the slope, as SVG or JSON.
   std::string field(const Job& job, std::int64_t index, bool svg);
   /// The particles at the end of a run, which is repeated for its snapshots. The 16 newest of a job are kept.
@@ -54,7 +56,7 @@ class Jobs {
   /// @param pointer  of every fault; empty: that of the input concerned
   void check_size(double particles, double steps, std::int64_t realizations, const std::string& pointer = "") const;
   void check_queue(const std::string& subject) const;
-  std::optional<Job> record(const NewJob& job, const Store::Response& response);
+  std::optional<Job> record(const NewJob& job, const Store::Response& response, Milliseconds created);
   /// `talus ARGUMENTS`, for at most `limit`. @throws Refusal where it cannot start, takes longer, or cannot read or
   /// write
   CommandOutput run_command(std::vector<std::string> arguments, std::chrono::seconds limit);
@@ -67,6 +69,10 @@ class Jobs {
   CommandOutput prepare(const std::filesystem::path& case_file, const StudyPaths& directory, std::int64_t realizations,
                         std::int64_t seed);
   TemporaryDirectory scratch_directory() const;
+  void repair(const Job& job);
+  /// The plan of a job for its present number of realizations, and its tables and study.json written anew.
+  Plan plan_of(const Job& job);
+  void publish_again(const Job& job);
 
   const Config& config_;
   DataDirectory data_;
@@ -75,7 +81,7 @@ class Jobs {
   std::counting_semaphore<64> running_commands_{4};  ///< at a time
   std::counting_semaphore<1024> running_runs_;       ///< runs outside the queue at a time
   std::atomic<bool> stopping_{false};
-  std::mutex extending_;
+  std::mutex changing_study_;  ///< held by who writes the case, the plan or the marker of a job
   ResultCache distributions_, field_terms_;
 };
 

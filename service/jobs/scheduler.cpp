@@ -4,6 +4,9 @@
 
 #include "base/json.hpp"
 #include "executor/slurm.hpp"
+#include "jobs/orphans.hpp"
+#include "jobs/repair.hpp"
+#include "jobs/reserve.hpp"
 #include "study/estimator.hpp"
 #include "support/files.hpp"
 #include "support/text.hpp"
@@ -65,8 +68,13 @@ void Scheduler::count(const RunEvent& event) {
 }
 
 void Scheduler::start() {
-  move_orphans_aside();
-  const std::int64_t requeued = store_.requeue_all();
+  make_reserve(data_);
+  const std::int64_t requeued = with_reserve(data_, [&] {
+    put_orphans_aside(data_, store_.job_ids());
+    for (const std::string& what : store_.repair_rows()) log_error("damaged_row", {{"what", what}});
+    check_job_records(data_, store_);
+    return store_.requeue_all();
+  });
   if (requeued > 0) log_info("requeued", {{"runs", requeued}, {"why", "an earlier talusd held them"}});
   thread_ = std::thread([this] { loop(); });
 }
@@ -108,10 +116,20 @@ void Scheduler::loop() {
       if (!in_trouble_) log_error("scheduler_waits", {{"why", e.what()}});
       in_trouble_ = true;
       read_queue_ = true;
-      std::this_thread::sleep_for(trouble_interval);
+      free_space();
+      wait_for(trouble_interval);
     }
   }
   end_runs();
+}
+
+/// On a full disk nothing else can be done.
+void Scheduler::free_space() {
+  try {
+    if (removing_ && Steady::now() >= next_removal_) remove_dismissed();
+  } catch (const std::exception& e) {
+    log_error("not_removed_yet", {{"why", e.what()}});
+  }
 }
 
 void Scheduler::tick() {
@@ -127,12 +145,12 @@ void Scheduler::tick() {
   if (read_queue_) {
     engine_.start_runs();
     counters_.running = static_cast<int>(engine_.running());
-    finish_complete();
-    read_queue_ = false;
+    read_queue_ = finish_complete();
     changes_.notify();
   }
   if (Steady::now() < next_reasons_) return;
   next_reasons_ = Steady::now() + reasons_interval;
+  make_reserve(data_);
   note_pending_reasons();
 }
 
@@ -140,11 +158,12 @@ bool Scheduler::room_on_disk() const {
   return disk_left(config_.data) >= std::max(config_.quotas.disk_bytes / 2, least_disk_bytes);
 }
 
-/// The statistics of jobs whose runs have all ended.
-void Scheduler::finish_complete() {
+/// The statistics of jobs whose runs have all ended. @return whether runs have been queued again instead
+bool Scheduler::finish_complete() {
+  bool requeued = false;
   for (const Job& job : store_.complete_jobs()) {
     try {
-      finish(job);
+      requeued |= !finish(job);
     } catch (const IoError& e) {
       log_error("no_statistics", {{"job", job.id}, {"why", e.what()}});
       if (!room_on_disk()) throw;  // tried again when there is room
@@ -153,10 +172,17 @@ void Scheduler::finish_complete() {
     engine_.forget(job.number);
     changes_.notify();
   }
+  return requeued;
 }
 
-void Scheduler::finish(const Job& job) {
+/// @return false where results are missing: their runs are queued again
+bool Scheduler::finish(const Job& job) {
   const StudyPaths paths{data_.job(job.id)};
+  if (const std::vector<RunKey> missing = missing_results(data_, job, store_); !missing.empty()) {
+    log_error("results_missing", {{"job", job.id}, {"runs", missing.size()}});
+    store_.requeue_lost(job.number, missing);
+    return false;
+  }
   std::optional<Plan> plan = find_plan(paths.root);
   if (!plan) throw IoError("there is no plan.json in " + paths.root.string());
   plan->study.realizations = job.planned;
@@ -168,13 +194,14 @@ void Scheduler::finish(const Job& job) {
   if (too_many) message += ": more than max_failed_share = " + to_text(job.max_failed_share) + " of those planned";
   if (const std::string quality = quality_line(summary.quality_json()); !quality.empty()) message += "; " + quality;
   if (summary.stopped_early()) message += "; stopped early: the mean has the requested precision";
-  if (!store_.finish(job.number, too_many ? JobState::failed : JobState::successful, message)) return;
+  if (!store_.finish(job.number, too_many ? JobState::failed : JobState::successful, message)) return true;
   log_info("job_ended", {{"job", job.id},
                          {"state", too_many ? "failed" : "successful"},
                          {"done", summary.done()},
                          {"failed", summary.failed()}});
   std::error_code ignored;
   fs::remove_all(paths.work(), ignored);
+  return true;
 }
 
 /// Records why the executor runs nothing of a job.
@@ -228,31 +255,6 @@ void Scheduler::remove_dismissed() {
       next_removal_ = Steady::now() + removal_interval;
     }
   }
-}
-
-/// At start: moves directories that the queue does not know to DATA/orphans. They may be the results of a queue that
-/// was lost or restored from an older backup. Only unfinished submissions and scratch files are deleted.
-void Scheduler::move_orphans_aside() {
-  const std::set<std::string> known = store_.job_ids();
-  for (const auto& entry : fs::directory_iterator(data_.jobs())) {
-    const std::string name = entry.path().filename().string();
-    if (known.contains(name)) continue;
-    if (name.starts_with(DataDirectory::unfinished_prefix)) {
-      removed(entry.path());
-      continue;
-    }
-    fs::path target = data_.orphans() / name;
-    for (int copy = 2; fs::exists(fs::symlink_status(target)); ++copy)
-      target = data_.orphans() / (name + "-" + std::to_string(copy));
-    fs::create_directories(data_.orphans());
-    fs::rename(entry.path(), target);
-    ++counters_.orphans;
-    log_error("orphan", {{"directory", entry.path().string()},
-                         {"moved_to", target.string()},
-                         {"why", "the queue knows no job of this name; was the queue lost or restored?"}});
-  }
-  removed(data_.scratch());
-  fs::create_directories(data_.scratch());
 }
 
 void Scheduler::drain() {

@@ -20,7 +20,6 @@ struct RunCounters {
   std::array<std::atomic<std::int64_t>, 6> ended{};  ///< runs by RunEvent::Kind
   std::atomic<std::int64_t> wall_clock_ms{0};        ///< of the done ones
   std::atomic<int> running{0};                       ///< now
-  std::atomic<int> orphans{0};                       ///< directories moved to DATA/orphans at start
 };
 
 /// Wakes the requests that wait for a change of a job. Thread-safe.
@@ -77,12 +76,12 @@ class Scheduler {
   void end_runs();
   EngineOptions engine_options();
   void count(const RunEvent& event);
-  void finish_complete();
-  void finish(const Job& job);
+  bool finish_complete();
+  bool finish(const Job& job);
   void note_pending_reasons();
   void run_echo();
   void remove_dismissed();
-  void move_orphans_aside();
+  void free_space();
   bool room_on_disk() const;
 
   const Config& config_;

@@ -34,7 +34,7 @@ void TemporaryDirectory::move_to(const fs::path& place) {
 
 CommandOutput run_to_end(const executor::Command& command, const fs::path& scratch, std::chrono::milliseconds limit,
                          const std::function<bool()>& give_up) {
-  const TemporaryDirectory files(scratch / ("command-" + random_hex(8)));
+  const TemporaryDirectory files(scratch / (std::string(command_prefix) + random_hex(8)));
   CommandOutput output;
   executor::Process child(command, files / "out", files / "err");
   const auto deadline = std::chrono::steady_clock::now() + limit;

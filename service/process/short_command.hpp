@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "executor/process.hpp"
 
@@ -28,6 +29,9 @@ class TemporaryDirectory {
   std::filesystem::path path_;
   bool kept_ = false;
 };
+
+/// Before the random name of a directory that run_to_end() makes in `scratch`.
+inline constexpr std::string_view command_prefix = "command-";
 
 struct CommandOutput {
   executor::ProcessEnd end;

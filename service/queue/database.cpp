@@ -14,6 +14,8 @@ namespace {
 
 constexpr int busy_timeout_ms = 5000;
 constexpr int reader_count = 8;
+constexpr const char* damage_advice =
+    "restore a backup, or move it away with its -wal and -shm and take the jobs back with talusd --adopt";
 
 /// FULL: what is committed is on the disk, so a 201 holds after a power cut.
 void prepare(SQLite::Database& db) {
@@ -49,10 +51,28 @@ SQLite::Database open(const std::filesystem::path& path) try {
 
 }  // namespace
 
+void check_pages(SQLite::Database& db, const std::filesystem::path& path) {
+  std::string faults;
+  SQLite::Statement query(db, "PRAGMA quick_check(3)");
+  while (query.executeStep()) {
+    const std::string line = query.getColumn(0).getString();
+    if (line != "ok") faults += "; " + line;
+  }
+  if (!faults.empty())
+    throw StorageError(
+        path.string() + " is damaged" + faults +
+        "; restore a backup, or move it away with its -wal and -shm and take the jobs back with --adopt");
+}
+
 Database::Database(std::filesystem::path path) : path_(std::move(path)), writer_(open(path_)) {
-  translated([&] { prepare(writer_); });
+  translated([&] {
+    prepare(writer_);
+    check_pages(writer_, path_);
+  });
   migrate();
   translated([&] {
+    // The histograms come from this index alone. Unlike the pages of tables, its content follows from other pages.
+    if (writer_.execAndGet("PRAGMA integrity_check(1)").getString() != "ok") writer_.exec("REINDEX");
     for (int i = 0; i < reader_count; ++i) {
       readers_.push_back(std::make_unique<SQLite::Database>(path_.string(), SQLite::OPEN_READWRITE, busy_timeout_ms));
       readers_.back()->exec("PRAGMA query_only = ON");
@@ -102,6 +122,9 @@ void Database::throw_storage_error(const SQLite::Exception& e) {
     case SQLITE_IOERR:  // also when there is no room for the write-ahead log
       throw StorageError(std::string("the queue cannot be written, probably because the disk is full: ") + e.what(),
                          true);
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      throw StorageError(std::string("the queue is damaged: ") + e.what() + "; " + damage_advice);
     default:
       throw StorageError(std::string("the queue: ") + e.what());
   }

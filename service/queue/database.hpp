@@ -17,10 +17,14 @@ struct StorageError : std::runtime_error {
   bool disk_full;
 };
 
+/// Checks the structure of all pages (PRAGMA quick_check).
+/// @throws StorageError naming the first faults, and what to do
+void check_pages(SQLite::Database& db, const std::filesystem::path& path);
+
 class Database {
  public:
-  /// Opens or creates the file and brings its tables up to date.
-  /// @throws StorageError also when it was written by a newer version
+  /// Opens or creates the file, checks its pages and brings its tables up to date.
+  /// @throws StorageError also when it is damaged, or was written by a newer version
   explicit Database(std::filesystem::path path);
 
   /// Runs `action(SQLite::Database&)` in one BEGIN IMMEDIATE transaction; nothing of it remains if it throws.

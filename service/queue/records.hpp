@@ -70,7 +70,11 @@ struct Run {
   std::int64_t attempt = 0, crashes = 0;
   std::optional<Record> result = {};
   std::optional<Failure> failure = {};
+  bool damaged = false;  ///< it is done, and its record does not agree with its checksum
 };
+
+/// The hash of a run's key and record as the queue keeps it; numbers that were not recorded are left out.
+std::string checksum_of(std::int64_t job, const RunKey& key, const Record& record);
 
 /// Which jobs to list, newest first.
 struct JobFilter {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "queue/records.hpp"
+#include "study/directory_store.hpp"
 
 namespace talus::service {
 
@@ -122,7 +123,7 @@ void visit_runs(SQLite::Database& db, Take take, const std::string& condition, c
   SQLite::Statement query =
       statement(db,
                 "SELECT job, level, kind, idx, state, attempt, crashes, " + numbers +
-                    "digest, verdict, verdict_reasons, lower_bounds, reason, exit_code, signal, log_tail "
+                    "digest, verdict, verdict_reasons, lower_bounds, reason, exit_code, signal, log_tail, checksum "
                     "FROM runs WHERE " +
                     condition,
                 values...);
@@ -130,12 +131,14 @@ void visit_runs(SQLite::Database& db, Take take, const std::string& condition, c
     Run run;
     Record result{.done = true};
     Failure failure;
+    std::optional<std::string> checksum;
     Row row(query);
     row >> run.job >> run.key >> run.state >> run.attempt >> run.crashes;
     result.index = run.key.index;
     visit_numbers(result, [&](const char*, const char*, auto& number) { row >> number; });
     row >> result.digest >> result.verdict >> result.objections >> result.lower_bounds >> failure.reason >>
-        failure.exit_code >> failure.signal >> failure.log_tail;
+        failure.exit_code >> failure.signal >> failure.log_tail >> checksum;
+    run.damaged = run.state == RunState::done && checksum && *checksum != checksum_of(run.job, run.key, result);
     if (run.state == RunState::done) run.result = std::move(result);
     if (run.state == RunState::failed) run.failure = std::move(failure);
     take(run);
@@ -154,10 +157,27 @@ bool change_job(SQLite::Database& db, std::int64_t job, Milliseconds now, const 
              job, now, values...) == 1;
 }
 
+/// Records runs that wait as ended, within a transaction; keys that the job does not have are ignored.
+void record_ended_runs(SQLite::Database& db, std::int64_t job, RunKind kind, const Records& records, Milliseconds now);
+
 inline constexpr const char* job_is_open = "state IN ('accepted', 'running')";
 /// Holds for a job none of whose runs waits or is under way. Two terms, since each has its partial index.
 inline constexpr const char* no_open_runs =
     "NOT EXISTS (SELECT 1 FROM runs WHERE job = number AND state = 'queued') AND "
     "NOT EXISTS (SELECT 1 FROM runs WHERE job = number AND state = 'leased')";
+
+/// The counts of a job from its runs.
+inline constexpr const char* counted_anew =
+    "done = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done'), "
+    "sound = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done' AND verdict = 'sound'), "
+    "doubtful = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done' AND verdict = 'doubtful'), "
+    "replicates_ended = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 1 AND state IN ('done', 'failed'))";
+
+/// Changes that open a job that has ended again.
+inline constexpr const char* reopened = "state = 'running', finished = NULL, message = ''";
+
+std::optional<Job> one_job(SQLite::Database& db, std::int64_t number);
+/// Queues the runs of a job that it does not have yet, in the order of their ranks.
+void insert_runs(SQLite::Database& db, std::int64_t job, std::int64_t replicates, std::int64_t realizations);
 
 }  // namespace talus::service

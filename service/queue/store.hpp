@@ -11,6 +11,7 @@
 
 #include "queue/database.hpp"
 #include "queue/records.hpp"
+#include "study/directory_store.hpp"
 #include "study/publish.hpp"
 #include "study/store.hpp"
 #include "study/summary.hpp"
@@ -33,8 +34,13 @@ class Store final : public talus::Store {
 
   /// Records a job and its runs; durable when this returns.
   /// @param response  stored in the same transaction; unset: the request had no key
+  /// @param created  unset: now
   /// @return the job; nothing where another request has used the key meanwhile
-  std::optional<Job> create(const NewJob& job, const Response& response = {});
+  std::optional<Job> create(const NewJob& job, const Response& response = {},
+                            const std::optional<Milliseconds>& created = {});
+  /// Records a job again that the queue has lost, with the outcomes that its directory holds; the rest is queued.
+  /// @param created  when it was first recorded
+  Job recreate(const NewJob& job, Milliseconds created, const Records& runs, const Records& replicates);
   std::optional<Job> job(const std::string& id);
   std::optional<Job> job(std::int64_t number);
   std::vector<Job> jobs(const JobFilter& filter);
@@ -43,6 +49,8 @@ class Store final : public talus::Store {
   /// The ids of the jobs in a state, or of all.
   std::set<std::string> job_ids(const std::optional<JobState>& state = {});
   StateCounts state_counts();
+  /// Visits the studies that are not dismissed, one at a time.
+  void visit_studies(const std::function<void(const Job&)>& visit);
 
   /// Records why no run of an open job is under way; empty: the reason is unknown.
   void note_pending_reason(std::int64_t job, const std::string& why);
@@ -52,6 +60,13 @@ class Store final : public talus::Store {
   bool finish(std::int64_t job, JobState state, const std::string& message);
   /// Dismisses a job in any state and deletes its runs, so no claim on them is current any more.
   void dismiss(std::int64_t job);
+  /// At start: queues runs again whose record does not agree with its checksum, and counts the runs of jobs anew whose
+  /// counts are wrong. Reads every run once. @return what was damaged
+  std::vector<std::string> repair_rows();
+  /// Makes what submission fixed of a job that of `right`. @return false where it is
+  bool restore(const Job& job, const NewJob& right);
+  /// Requeues runs that are done, since their results are lost, and opens the job again.
+  void requeue_lost(std::int64_t job, std::span<const RunKey> lost);
   /// Requeues the failed runs. @return how many
   std::int64_t retry_failed(std::int64_t job, const Response& response = {});
   /// Adds realizations up to `planned` in all, unless the job has been dismissed.

@@ -9,17 +9,6 @@ namespace {
 
 constexpr Milliseconds key_lifetime = Milliseconds{7} * 24 * 3600 * 1000;
 
-/// Queues the runs of a job that it does not have yet, in the order of their ranks.
-void insert_runs(SQLite::Database& db, std::int64_t job, std::int64_t replicates, std::int64_t realizations) {
-  SQLite::Statement insert(
-      db, "INSERT INTO runs (job, level, kind, idx, rank) VALUES (?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");
-  for (std::int64_t rank = 0; rank < replicates + realizations; ++rank) {
-    Binder(insert) << job << run_of_rank(rank, replicates) << rank;
-    insert.exec();
-    insert.reset();
-  }
-}
-
 /// Deletes old responses and stores this one. @return false where there is one for its key already
 bool store_response(SQLite::Database& db, const StoredResponse& response, Milliseconds now) {
   execute(db, "DELETE FROM stored_responses WHERE created < ?", now - key_lifetime);
@@ -30,35 +19,71 @@ bool store_response(SQLite::Database& db, const StoredResponse& response, Millis
                  now) == 1;
 }
 
-std::optional<Job> one_job(SQLite::Database& db, std::int64_t number) {
-  const std::vector<Job> found = select_jobs(db, "number = ?", number);
-  return found.empty() ? std::nullopt : std::optional(found.front());
+/// Inserts a job and queues its runs.
+Job insert_job(SQLite::Database& db, const NewJob& job, Milliseconds created, Milliseconds now) {
+  execute(db,
+          "INSERT INTO jobs (id, process, subject, title, inputs, state, seed, planned, replicates, "
+          "max_failed_share, may_stop_early, case_hash, particles, steps, created, updated) "
+          "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+          job.id, job.process, job.subject, job.title, job.inputs, JobState::accepted, job.seed, job.planned,
+          job.replicates, job.max_failed_share, job.may_stop_early, job.case_hash, job.particles, job.steps, created,
+          now);
+  const Job made = *one_job(db, db.getLastInsertRowid());
+  if (job.planned > 0) insert_runs(db, made.number, job.replicates, job.planned);
+  return made;
 }
 
 /// Thrown inside a transaction so that it is rolled back.
 struct KeyTaken {};
 
-constexpr const char* reopened = "state = 'running', finished = NULL, message = ''";
-
 }  // namespace
 
-std::optional<Job> Store::create(const NewJob& job, const Response& response) try {
+std::optional<Job> one_job(SQLite::Database& db, std::int64_t number) {
+  const std::vector<Job> found = select_jobs(db, "number = ?", number);
+  return found.empty() ? std::nullopt : std::optional(found.front());
+}
+
+void insert_runs(SQLite::Database& db, std::int64_t job, std::int64_t replicates, std::int64_t realizations) {
+  SQLite::Statement insert(
+      db, "INSERT INTO runs (job, level, kind, idx, rank) VALUES (?, ?, ?, ?, ?) ON CONFLICT DO NOTHING");
+  for (std::int64_t rank = 0; rank < replicates + realizations; ++rank) {
+    Binder(insert) << job << run_of_rank(rank, replicates) << rank;
+    insert.exec();
+    insert.reset();
+  }
+}
+
+std::optional<Job> Store::create(const NewJob& job, const Response& response,
+                                 const std::optional<Milliseconds>& created) try {
   return db_.write([&](SQLite::Database& db) {
     const Milliseconds now = clock_();
-    execute(db,
-            "INSERT INTO jobs (id, process, subject, title, inputs, state, seed, planned, replicates, "
-            "max_failed_share, may_stop_early, case_hash, particles, steps, created, updated) "
-            "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-            job.id, job.process, job.subject, job.title, job.inputs, JobState::accepted, job.seed, job.planned,
-            job.replicates, job.max_failed_share, job.may_stop_early, job.case_hash, job.particles, job.steps, now,
-            now);
-    std::optional<Job> made = one_job(db, db.getLastInsertRowid());
-    if (job.planned > 0) insert_runs(db, made->number, job.replicates, job.planned);
+    std::optional<Job> made = insert_job(db, job, created.value_or(now), now);
     if (response && !store_response(db, response(*made), now)) throw KeyTaken{};
     return made;
   });
 } catch (const KeyTaken&) {
   return std::nullopt;
+}
+
+Job Store::recreate(const NewJob& job, Milliseconds created, const Records& runs, const Records& replicates) {
+  return db_.write([&](SQLite::Database& db) {
+    const Milliseconds now = clock_();
+    const Job made = insert_job(db, job, created, now);
+    change_job(db, made.number, now, "state = 'running', started = ?2", "TRUE");
+    record_ended_runs(db, made.number, RunKind::realization, runs, now);
+    record_ended_runs(db, made.number, RunKind::replicate, replicates, now);
+    return *one_job(db, made.number);
+  });
+}
+
+void Store::visit_studies(const std::function<void(const Job&)>& visit) {
+  std::vector<std::int64_t> numbers;
+  db_.read([&](SQLite::Database& db) {
+    SQLite::Statement query(db, "SELECT number FROM jobs WHERE planned > 0 AND state != 'dismissed' ORDER BY number");
+    while (query.executeStep()) numbers.push_back(query.getColumn(0).getInt64());
+  });
+  for (const std::int64_t number : numbers)
+    if (const std::optional<Job> study = job(number)) visit(*study);
 }
 
 std::optional<Job> Store::job(const std::string& id) {
@@ -145,6 +170,18 @@ void Store::dismiss(std::int64_t job) {
     change_job(db, job, clock_(), "state = 'dismissed', message = 'dismissed', finished = COALESCE(finished, ?2)",
                "state != 'dismissed'");
     execute(db, "DELETE FROM runs WHERE job = ?", job);
+  });
+}
+
+void Store::requeue_lost(std::int64_t job, std::span<const RunKey> lost) {
+  if (lost.empty()) return;
+  db_.write([&](SQLite::Database& db) {
+    for (const RunKey& key : lost)
+      execute(db,
+              "UPDATE runs SET state = 'queued', crashes = 0 "
+              "WHERE job = ? AND level = ? AND kind = ? AND idx = ? AND state = 'done'",
+              job, key);
+    change_job(db, job, clock_(), std::string(reopened) + ", " + counted_anew, "state != 'dismissed'");
   });
 }
 

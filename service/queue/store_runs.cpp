@@ -25,6 +25,31 @@ void count_ended(SQLite::Database& db, const Claim& claim, const char* column, V
   change_job(db, claim.study, now, changes, "TRUE");
 }
 
+bool record_done(SQLite::Database& db, const Claim& claim, const Record& result, Milliseconds now) {
+  std::string numbers;
+  visit_numbers(result, [&](const char* key, const char*, auto) { numbers += key + std::string(" = ?, "); });
+  SQLite::Statement update(
+      db, "UPDATE runs SET state = 'done', " + numbers +
+              "digest = ?, verdict = ?, verdict_reasons = ?, lower_bounds = ?, checksum = ? WHERE " + is_current_claim);
+  Binder values(update);
+  visit_numbers(result, [&](const char*, const char*, auto value) { values << value; });
+  values << result.digest << result.verdict << result.objections << result.lower_bounds
+         << checksum_of(claim.study, claim.key, result) << claim;
+  if (update.exec() != 1) return false;
+  count_ended(db, claim, "done", result.verdict, now);
+  return true;
+}
+
+bool record_failed(SQLite::Database& db, const Claim& claim, const Failure& failure, Milliseconds now) {
+  const int changed = execute(db,
+                              "UPDATE runs SET state = 'failed', crashes = crashes + 1, reason = ?, exit_code = ?, "
+                              "signal = ?, log_tail = ? WHERE " +
+                                  is_current_claim,
+                              failure.reason, failure.exit_code, failure.signal, failure.log_tail, claim);
+  if (changed == 1) count_ended(db, claim, "failed", failed_record(claim.key.index, failure.reason).verdict, now);
+  return changed == 1;
+}
+
 std::vector<double> column(SQLite::Database& db, const std::string& sql, std::int64_t job) {
   std::vector<double> values;
   for (SQLite::Statement query = statement(db, sql, job); query.executeStep();)
@@ -33,6 +58,20 @@ std::vector<double> column(SQLite::Database& db, const std::string& sql, std::in
 }
 
 }  // namespace
+
+void record_ended_runs(SQLite::Database& db, std::int64_t job, RunKind kind, const Records& records, Milliseconds now) {
+  for (const auto& [index, record] : records) {
+    const Claim claim{.study = job, .key = {.kind = kind, .index = index}, .attempt = 1};
+    execute(db,
+            "UPDATE runs SET state = 'leased', attempt = 1 "
+            "WHERE job = ? AND level = ? AND kind = ? AND idx = ? AND state = 'queued'",
+            job, claim.key);
+    if (record.done)
+      record_done(db, claim, record, now);
+    else
+      record_failed(db, claim, {.reason = record.reason}, now);
+  }
+}
 
 std::optional<Claim> Store::claim() {
   const bool any = db_.read([](SQLite::Database& db) { return statement(db, next_job).executeStep(); });
@@ -87,32 +126,11 @@ bool Store::is_current(const Claim& claim) {
 }
 
 bool Store::accept(const Claim& claim, const Record& result) {
-  return db_.write([&](SQLite::Database& db) {
-    std::string numbers;
-    visit_numbers(result, [&](const char* key, const char*, auto) { numbers += key + std::string(" = ?, "); });
-    SQLite::Statement update(db, "UPDATE runs SET state = 'done', " + numbers +
-                                     "digest = ?, verdict = ?, verdict_reasons = ?, lower_bounds = ? WHERE " +
-                                     is_current_claim);
-    Binder values(update);
-    visit_numbers(result, [&](const char*, const char*, auto value) { values << value; });
-    values << result.digest << result.verdict << result.objections << result.lower_bounds << claim;
-    if (update.exec() != 1) return false;
-    count_ended(db, claim, "done", result.verdict, clock_());
-    return true;
-  });
+  return db_.write([&](SQLite::Database& db) { return record_done(db, claim, result, clock_()); });
 }
 
 bool Store::fail(const Claim& claim, const Failure& failure) {
-  return db_.write([&](SQLite::Database& db) {
-    const int changed = execute(db,
-                                "UPDATE runs SET state = 'failed', crashes = crashes + 1, reason = ?, exit_code = ?, "
-                                "signal = ?, log_tail = ? WHERE " +
-                                    is_current_claim,
-                                failure.reason, failure.exit_code, failure.signal, failure.log_tail, claim);
-    if (changed == 1)
-      count_ended(db, claim, "failed", failed_record(claim.key.index, failure.reason).verdict, clock_());
-    return changed == 1;
-  });
+  return db_.write([&](SQLite::Database& db) { return record_failed(db, claim, failure, clock_()); });
 }
 
 bool Store::give_back(const Claim& claim, bool crashed) {

@@ -13,6 +13,7 @@
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "sph/pair_loops.hpp"
+#include "support/standard_output.hpp"
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -45,9 +46,8 @@ int report(Exit code, const std::string& text) {
   return static_cast<int>(code);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// The program, but for the check of its output. @return the exit code
+int run_program(int argc, char** argv) {
   settle_runtime(argv);
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error with a message, not a sudden death
 #ifdef __GLIBC__
@@ -88,3 +88,7 @@ int main(int argc, char** argv) {
     return report(Exit::internal, std::string("internal error: ") + e.what());
   }
 }
+
+}  // namespace
+
+int main(int argc, char** argv) { return talus::checked_output(run_program(argc, argv), "talus"); }

@@ -79,7 +79,7 @@ Exit stats(const StatsOptions& options) {
     return Exit::ok;
   }
   const Json study = summary.json();
-  const std::string text = study.dump(2) + "\n";
+  const std::string text = with_checksum(study);
   if (!options.out.empty())
     write_merged(options.out, tables, first);
   else if (options.from_runs)

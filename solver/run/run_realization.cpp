@@ -145,7 +145,7 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
   if (std::ranges::any_of(soil.xi, [](double xi) { return xi != 0.0; }))
     facts.correlation_length = shortest_correlation(problem.field);
   outcome.result.quality = assess(facts);
-  outcome.document = result_json(outcome.result, provenance).dump(2) + "\n";
+  outcome.document = with_checksum(result_json(outcome.result, provenance));
   write_file_atomically(out.path() / "result.json", outcome.document);
   const bool moves = outcome.result.ending == Ending::end_time && !outcome.result.at_rest;
   if (request.keep_final_state && moves)

@@ -11,6 +11,11 @@ using Kind = RunEvent::Kind;
 
 constexpr std::size_t tail_bytes = 4000;
 
+void make_directories(const StudyPaths& paths) {
+  for (const fs::path& directory : {paths.runs(), paths.floor(), paths.work(), paths.profiles()})
+    fs::create_directories(directory);
+}
+
 }  // namespace
 
 Engine::Engine(Store& store, std::unique_ptr<executor::Executor> executor, EngineOptions options)
@@ -21,8 +26,7 @@ Engine::Study& Engine::open(StudyNumber number) {
   StudyInfo info = store_.study(number);
   Estimator estimator(info.spec, info.first, info.end);
   store_.visit_records(number, [&](const RunKey& key, std::optional<double> zone) { estimator.add(key, zone); });
-  for (const fs::path& directory : {info.paths.runs(), info.paths.floor(), info.paths.work(), info.paths.profiles()})
-    fs::create_directories(directory);
+  if (fs::exists(info.paths.resolved_case())) make_directories(info.paths);  // otherwise stop_where_lost() says so
   const auto [study, fresh] = studies_.insert_or_assign(number, Study{std::move(info), std::move(estimator)});
   apply_decision(number);
   return study->second;
@@ -58,7 +62,7 @@ void Engine::start_runs() {
 void Engine::start(const Claim& claim) {
   const Study& study = open(claim.study);
   if (!store_.is_current(claim)) return;  // the records already decide how the study ends
-  if (take_over(claim)) return;
+  if (stop_where_lost(study.info, claim.study) || take_over(claim)) return;
   const fs::path work = study.info.paths.work(claim.key);
   const std::string prefix = study.info.name.empty() ? "" : study.info.name + "/";
   executor::Command command = options_.command(study.info, claim.key);
@@ -70,6 +74,15 @@ void Engine::start(const Claim& claim) {
                         .directory = work,
                         .log = study.info.paths.log(claim.key)});
   runs_.emplace(id, UnderWay{claim, time_limit_s});
+}
+
+/// Stops a study whose directory somebody has removed: its runs would fail one after the other.
+bool Engine::stop_where_lost(const StudyInfo& info, StudyNumber number) {
+  const fs::path file = info.paths.resolved_case();
+  if (fs::exists(file)) return false;
+  kill_runs(number, true);
+  store_.abort(number, false, "the study stops: " + file.string() + " is missing");
+  return true;
 }
 
 /// Accepts a result that a run of an earlier process has left.
@@ -114,6 +127,8 @@ void Engine::record(UnderWay& run) {
     return report({.kind = Kind::stale, .study = studies_.at(claim.study).info, .claim = claim});
   }
   const StudyInfo& info = open(claim.study).info;
+  if (stop_where_lost(info, claim.study)) return;
+  make_directories(info.paths);
   RunEnd end{.ended = *run.ended,
              .stopping = stopping_,
              .disk_full = !room_on_disk(),

@@ -74,6 +74,7 @@ class Engine {
 
   Study& open(StudyNumber number);
   void start(const Claim& claim);
+  bool stop_where_lost(const StudyInfo& info, StudyNumber number);
   bool take_over(const Claim& claim);
   void record(UnderWay& run);
   void record_done(const Claim& claim, const Record& record, RunEvent::Kind kind);

@@ -63,7 +63,7 @@ std::optional<Plan> find_plan(const fs::path& directory) {
 }
 
 void write_plan(const fs::path& directory, const Plan& plan) {
-  write_file_atomically(directory / plan_name, to_json(plan).dump(2) + "\n");
+  write_file_atomically(directory / plan_name, with_checksum(to_json(plan)));
 }
 
 void check_continues(const Plan& begun, const Plan& asked, const fs::path& directory, bool resume) {

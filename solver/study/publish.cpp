@@ -7,7 +7,9 @@
 #include <map>
 
 #include "support/csv.hpp"
+#include "support/digest.hpp"
 #include "support/files.hpp"
+#include "support/json.hpp"
 #include "support/output_directory.hpp"
 #include "support/text.hpp"
 
@@ -20,6 +22,7 @@ constexpr std::size_t max_case_bytes = std::size_t{1} << 30;
 constexpr std::size_t max_csv_bytes = std::size_t{1} << 30;
 constexpr const char* of_realizations = "index";  ///< the head of the first column
 constexpr const char* of_replicates = "replicate";
+constexpr const char* checksum_column = "checksum";  ///< the last one
 
 /// The columns of a table, in order. Those of version 0.1.0 stand first, later ones after them.
 std::vector<std::string> column_names(const std::string& index_name) {
@@ -28,6 +31,7 @@ std::vector<std::string> column_names(const std::string& index_name) {
   visit_numbers(any, [&](const char* key, const char*, auto) { (is_later(key) ? later : names).emplace_back(key); });
   names.insert(names.end(), {"digest", "reason"});
   names.insert(names.end(), later.begin(), later.end());
+  names.emplace_back(checksum_column);
   return names;
 }
 
@@ -51,7 +55,8 @@ class Columns {
       if (!at_.emplace(header[i], i).second) fail("the column " + in_quotes(header[i]) + " stands there twice");
     }
     for (const std::string& name : known)
-      if (!at_.contains(name) && !may_be_missing(name) && !name.starts_with("verdict") && name != "lower_bounds")
+      if (!at_.contains(name) && !may_be_missing(name) && !name.starts_with("verdict") && name != "lower_bounds" &&
+          name != checksum_column)
         fail("the column " + in_quotes(name) + " is missing");
     index_ = at_.at(index_name);
   }
@@ -112,6 +117,20 @@ Record record(const std::vector<std::string>& fields, const Columns& columns, co
   return r;
 }
 
+/// A line of a table with the hash of what stands before it as its last field.
+std::string line_with_checksum(const Record& record) {
+  std::string line = csv_line(record);
+  line.pop_back();
+  return line + ',' + hex_digits(fnv1a64(line)) + '\n';
+}
+
+/// @throws IoError where a line does not agree with its checksum
+void check_line(std::string_view line, const std::string& place) {
+  const std::size_t last = line.rfind(',');
+  if (last == std::string_view::npos || line.substr(last + 1) != hex_digits(fnv1a64(line.substr(0, last))))
+    throw IoError(place + " does not agree with its checksum: the file is damaged, or was edited");
+}
+
 /// Merges `more` into `all` (both in order of index), in linear time.
 /// @param place  for messages: where `more` comes from
 void join(std::vector<Record>& all, const std::vector<Record>& more, const std::string& what, const std::string& place,
@@ -169,8 +188,10 @@ std::vector<Record> read_csv(const fs::path& path, const std::string& index_name
   const Columns columns(rows.fields(), index_name, [&](const std::string& why) {
     throw IoError(place() + " is not the header of a table of Talus: " + why);
   });
+  const bool checked = columns.find(checksum_column).has_value();
   std::vector<Record> records;
   while (rows.next()) {
+    if (checked) check_line(rows.text(), place());
     records.push_back(record(rows.fields(), columns, place()));
     if (records.size() > 1 && records.back().index <= records[records.size() - 2].index)
       throw IoError(place() + " has the " + index_name + " " + std::to_string(records.back().index) +
@@ -184,16 +205,16 @@ StudySummary publish(const StudyPaths& paths, const Plan& plan, const RecordSour
   AtomicFile realizations(paths.realizations()), noise_floor(paths.noise_floor());
   realizations.write(csv_header(of_realizations));
   runs([&](const Record& r) {
-    if (summary.add(r)) realizations.write(csv_line(r));
+    if (summary.add(r)) realizations.write(line_with_checksum(r));
   });
   noise_floor.write(csv_header(of_replicates));
   floor([&](const Record& r) {
     summary.add_replicate(r);
-    noise_floor.write(csv_line(r));
+    noise_floor.write(line_with_checksum(r));
   });
   realizations.commit();
   noise_floor.commit();
-  write_file_atomically(paths.summary(), summary.json().dump(2) + "\n");
+  write_file_atomically(paths.summary(), with_checksum(summary.json()));
   return summary;
 }
 

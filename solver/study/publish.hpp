@@ -15,12 +15,12 @@ namespace talus {
 /// Reads realizations.csv or noise_floor.csv: RFC 4180, a header, then one line per record in order of index, with
 /// numbers that read back exactly. `index_name` heads the first column ("index", "replicate"). Columns are found by
 /// name; a table of an earlier version may lack those that came later: measures and other numbers are NaN then, and the
-/// verdict is not_assessed.
-/// @throws IoError naming file and line: a column that is unknown, missing or there twice, a wrong number of fields,
-/// not a number, indices out of order or twice
+/// verdict is not_assessed. The last column, `checksum`, is the FNV-1a hash (64 bits) of the line before it.
+/// @throws IoError naming file and line: a line that does not agree with its checksum, a column that is unknown,
+/// missing or there twice, a wrong number of fields, not a number, indices out of order or twice
 std::vector<Record> read_csv(const std::filesystem::path& path, const std::string& index_name);
 
-/// The line of a record in these tables.
+/// The line of a record in these tables, without its checksum.
 std::string csv_line(const Record& record);
 
 /// Takes a record.

@@ -81,8 +81,8 @@ std::optional<Record> read_result(const fs::path& file, const RunKey& key, const
         place.at(name).get_to(value);
     });
     json.at("digest").get_to(record.digest);
-    for (const Json& bound : json.value("lower_bounds", Json::array()))
-      record.lower_bounds += (record.lower_bounds.empty() ? "" : " ") + bound.get<std::string>();
+    for (const Json& measure : json.value("lower_bounds", Json::array()))
+      record.lower_bounds += (record.lower_bounds.empty() ? "" : " ") + measure.get<std::string>();
     const bool interrupted = json.at("ending") == "interrupted";
     const auto hash = json.at("provenance").at("case_hash").get<std::string>();
     const bool earlier = std::ranges::find(of.earlier, hash) != of.earlier.end();
@@ -116,7 +116,7 @@ void write_failure(const StudyPaths& paths, const RunKey& key, const Failure& fa
                      {"attempts", attempts},
                      {"log_tail", failure.log_tail},
                      {"rerun", replay_command(key, seed, paths.resolved_case().string())}};
-  write_file_atomically(paths.failure(key), json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file_atomically(paths.failure(key), with_checksum(json));
 }
 
 std::optional<std::string> read_failure(const fs::path& file) try {
@@ -133,7 +133,7 @@ void keep_profiles(const StudyPaths& paths, const RunKey& key, double influence_
   if (!farthest) return;
   link_or_copy(snapshots, paths.profiles() / "worst.vtkhdf");
   write_file_atomically(paths.profiles() / "worst.json",
-                        Json{{"realization", key.index}, {"influence_zone_m", influence_zone}}.dump(2) + "\n");
+                        with_checksum({{"realization", key.index}, {"influence_zone_m", influence_zone}}));
 }
 
 }  // namespace talus

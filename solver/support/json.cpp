@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/digest.hpp"
 #include "support/faults.hpp"
 #include "support/files.hpp"
 #include "support/text.hpp"
@@ -143,7 +144,26 @@ class Builder : public nlohmann::json_sax<Json> {
   std::size_t values_ = 0;
 };
 
+constexpr std::string_view checksum_begin = ",\n  \"checksum\": \"", checksum_end = "\"\n}\n";
+constexpr std::size_t checksum_digits = 16;
+
+/// Whether the text of a file agrees with the checksum at its end; true where there is none.
+bool is_whole(std::string_view text) {
+  const std::size_t tail = checksum_begin.size() + checksum_digits + checksum_end.size();
+  if (text.size() < tail) return true;
+  const std::string_view before = text.substr(0, text.size() - tail), end = text.substr(before.size());
+  if (!end.starts_with(checksum_begin) || !end.ends_with(checksum_end)) return true;
+  return end.substr(checksum_begin.size(), checksum_digits) == hex_digits(fnv1a64(before));
+}
+
 }  // namespace
+
+std::string with_checksum(const Json& object) {
+  std::string text = object.dump(2, ' ', false, Json::error_handler_t::replace);
+  text.resize(text.size() - std::string_view("\n}").size());
+  const std::string checksum = hex_digits(fnv1a64(text));
+  return text.append(checksum_begin).append(checksum).append(checksum_end);
+}
 
 std::string read_text(const std::filesystem::path& path, std::size_t most) {
   std::error_code error;
@@ -166,8 +186,10 @@ Json parse_json(std::string_view text, const std::string& source, const JsonLimi
 }
 
 Json read_json(const std::filesystem::path& path, std::size_t max_bytes) {
+  const std::string text = read_file(path, max_bytes);
+  if (!is_whole(text)) throw IoError(path.string() + " is damaged: its text does not agree with its checksum");
   try {
-    return parse_json(read_file(path, max_bytes), path.filename().string(), own_file(max_bytes));
+    return parse_json(text, path.filename().string(), own_file(max_bytes));
   } catch (const ConfigError& e) {
     throw IoError(path.string() + " is not JSON that can be read: " + e.what());
   }

@@ -36,8 +36,14 @@ std::string read_text(const std::filesystem::path& path, std::size_t most = Json
 /// @throws ConfigError; a syntax error is placed at "source:line:column", the rest at JSON pointers
 Json parse_json(std::string_view text, const std::string& source, const JsonLimits& limits = {});
 
-/// Reads and parses a file that Talus wrote.
-/// @throws IoError naming the path: it cannot be read, is larger than `max_bytes`, or is not JSON
+/// The text of a file that Talus writes: the object, indented, with `checksum` as its last member, the FNV-1a hash
+/// (64 bits, hexadecimal) of the text before that member. It tells a damaged file from a whole one.
+/// @param object  has a member, and none named checksum
+std::string with_checksum(const Json& object);
+
+/// Reads and parses a file that Talus wrote; of one with a checksum, the text must agree with it. A file of an earlier
+/// version has none.
+/// @throws IoError naming the path: it cannot be read, is larger than `max_bytes`, is damaged, or is not JSON
 Json read_json(const std::filesystem::path& path, std::size_t max_bytes);
 
 /// The same, and what `read` makes of the document. @param what  that the file should be: "a plan of Talus"

@@ -21,12 +21,6 @@ const char* name(OutputKind kind) { return kind_names[static_cast<int>(kind)]; }
                 "; choose another directory or remove this one");
 }
 
-/// A leftover of a write_file_atomically that was killed.
-bool is_temporary(const fs::path& file) {
-  const std::string text = file.filename().string();
-  return text.starts_with('.') && text.find(".tmp-") != std::string::npos;
-}
-
 /// A directory is ours once it has the marker; before that it may only hold what a killed claim leaves behind.
 void refuse_foreign(const fs::path& directory) {
   if (find_output_marker(directory)) return;
@@ -52,8 +46,17 @@ void remove_temporaries(const fs::path& directory) {
 
 }  // namespace
 
+bool is_output_lock(const fs::path& file) { return file.filename() == lock_name; }
+
+bool is_temporary(const fs::path& file) {
+  const std::string text = file.filename().string();
+  return text.starts_with('.') && text.find(".tmp-") != std::string::npos;
+}
+
+fs::path output_marker_path(const fs::path& directory) { return directory / marker_name; }
+
 std::optional<OutputMarker> find_output_marker(const fs::path& directory) {
-  const fs::path path = directory / marker_name;
+  const fs::path path = output_marker_path(directory);
   std::error_code error;
   if (!fs::exists(path, error) && !error) return std::nullopt;
   return read_json(path, 1 << 16, "a marker of Talus; remove the directory or choose another one",
@@ -108,7 +111,7 @@ void OutputDirectory::write_marker() const {
   const Json json = {{"program", "talus"},           {"kind", name(marker_.kind)},
                      {"case_hash", marker_.of.hash}, {"case_hash_without_end", marker_.of.hash_without_end},
                      {"end_s", marker_.of.end},      {"finished", marker_.finished}};
-  write_file_atomically(path_ / marker_name, json.dump(2) + "\n");
+  write_file_atomically(output_marker_path(path_), with_checksum(json));
 }
 
 }  // namespace talus

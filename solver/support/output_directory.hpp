@@ -31,9 +31,16 @@ struct OutputMarker {
   bool finished = false;  ///< everything has been written
 };
 
+/// The marker file of a directory.
+std::filesystem::path output_marker_path(const std::filesystem::path& directory);
 /// The marker of a directory, or nothing where there is none.
 /// @throws IoError when there is one that cannot be read or is not ours
 std::optional<OutputMarker> find_output_marker(const std::filesystem::path& directory);
+
+/// The file that a directory of results is locked with.
+bool is_output_lock(const std::filesystem::path& file);
+/// What a write_file_atomically has not finished, or left when it was killed.
+bool is_temporary(const std::filesystem::path& file);
 
 /// A directory claimed for one run or study, for as long as the object lives.
 ///

@@ -36,6 +36,9 @@ IN_TEST = {
     "talusd --data data": "start_talusd --data data",
 }
 ELSEWHERE = {
+    "mv data old && cp -r backup data": "tests/service/test_keeping.py",
+    "mkdir -p data/orphans && cp -r old/jobs/ID data/orphans/": "tests/service/test_keeping.py",
+    "talusd --data data --adopt": "tests/service/test_keeping.py",
     "deploy/demo.sh": "tests/deploy/test_package.py",
     "tests/run.sh": ".ci/run",
     "cmake --build --preset release && (cd build/release && cpack -G DEB)": "deploy/Dockerfile",

@@ -53,6 +53,44 @@ class BadDays(ServiceTest):
         self.assertEqual((info["status"], info["realizations"]["done"]), ("successful", 40))
         self.assertEqual(self.daemon.stop(), 0)
 
+    def fill(self, place):
+        """Writes until not a byte is free."""
+        with open(place / "ballast", "ab", buffering=0) as ballast:
+            for size in (1 << 16, 4096, 1):
+                try:
+                    while True:
+                        ballast.write(b"x" * size)
+                except OSError:
+                    pass
+
+    def test_a_full_disk_can_be_freed_by_deleting_jobs(self):
+        place = self.on_small_disk(64)
+        data = place / "data"
+        self.daemon = Daemon(data, workers=1)
+        jobs = [self.daemon.submit(study(2, seed=seed)) for seed in (7, 8)]
+        for job in jobs:
+            self.daemon.wait_for(job)
+        self.assertGreater((data / "reserve").stat().st_size, 0)
+        for restart in (False, True):
+            if restart:
+                self.daemon.kill()
+            self.fill(place)
+            if restart:
+                self.daemon = Daemon(data, workers=1)  # which writes its queue
+            job = jobs.pop()
+            self.assertEqual(self.daemon.request("DELETE", f"/jobs/{job}").status, 200)
+            deadline = time.monotonic() + 30
+            while (data / "jobs" / job).exists() and time.monotonic() < deadline:
+                time.sleep(0.1)
+            self.assertFalse((data / "jobs" / job).exists(), (place / "talusd.log").read_text())
+            self.assertEqual(self.daemon.get(f"/jobs/{job}").json["status"], "dismissed")
+            (place / "ballast").unlink()
+            while not (data / "reserve").exists() and time.monotonic() < deadline:
+                time.sleep(0.1)  # it is made again once there is room
+            self.assertTrue((data / "reserve").exists())
+        self.daemon.wait_for(self.daemon.submit(study(1)))
+        self.assertEqual(self.daemon.stop(), 0)
+
     def test_a_database_that_cannot_be_written(self):
         """The file turns read-only while talusd runs (chattr +i, which holds for root and for open files too)."""
         self.start(workers=1)

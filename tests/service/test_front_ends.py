@@ -20,6 +20,7 @@ class Ended:
     def summary(self):
         summary = json.loads((self.directory / "study.json").read_text())
         summary.pop("effort")  # seconds
+        summary.pop("checksum")  # which covers them
         return summary
 
 

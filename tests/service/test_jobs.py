@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
 """What is beneath a job; workers that break, and quotas."""
-import concurrent.futures
 import json
 import os
 import signal
@@ -270,39 +269,6 @@ class Queue(ServiceTest):
         after = digests(self.daemon.data, job)
         self.assertEqual(before, {k: after[k] for k in before})
         self.assertEqual(len(after), 4)
-
-    def test_jobs_submitted_at_the_same_time_keep_their_directories(self):
-        # Many directories make a walk of DATA/jobs slow, so that jobs are accepted during it.
-        self.start("--max-jobs", 1000, "--max-jobs-each", 1000)
-        directories = self.daemon.data / "jobs"
-        for i in range(3000):
-            (directories / f"other-{i}").mkdir()
-        with concurrent.futures.ThreadPoolExecutor(8) as clients:
-            jobs = list(clients.map(lambda seed: self.daemon.submit(study(1, seed=seed)), range(40)))
-        self.assertEqual([job for job in jobs if not (directories / job / "case.resolved.json").exists()], [])
-        self.daemon.request("DELETE", f"/jobs/{jobs[0]}")
-        self.assertEqual(self.daemon.wait_for(jobs[1])["status"], "successful")
-
-    def test_directories_that_the_queue_does_not_know_are_put_aside(self):
-        self.start()
-        job = self.daemon.submit(study(3))
-        self.daemon.wait_for(job)
-        kept = digests(self.daemon.data, job)
-        self.assertEqual(self.daemon.stop(), 0)
-        for file in self.daemon.data.glob("queue.sqlite*"):
-            file.unlink()
-        (self.daemon.data / "jobs/notes").mkdir()
-        (self.daemon.data / "jobs/notes/important.txt").write_text("mine")
-        (self.daemon.data / "jobs/new-0123").mkdir()  # an unfinished submission
-        (self.daemon.data / "orphans/notes").mkdir(parents=True)
-        self.start()
-        self.assertEqual(list((self.daemon.data / "jobs").iterdir()), [])
-        orphans = self.daemon.data / "orphans"
-        self.assertEqual(sorted(p.name for p in orphans.iterdir()), sorted([job, "notes", "notes-2"]))
-        self.assertEqual({p.stem: json.loads(p.read_text())["digest"] for p in (orphans / job / "runs").iterdir()}, kept)
-        self.assertEqual((orphans / "notes-2/important.txt").read_text(), "mine")
-        self.assertIn(b"talus_orphans 2", self.daemon.get("/metrics").body)
-        self.assertIn("moved_to", self.daemon.log_text())
 
     def test_a_run_that_takes_too_long_fails(self):
         self.start("--time-limit", 1)

@@ -67,6 +67,9 @@ TEST(StudyFiles, FaultsNameTheFile) {
   std::string row = table.substr(header.size(), table.find('\n', header.size()) + 1 - header.size());
   row.replace(row.find("done,") + 5, row.find(',', row.find("done,") + 5) - row.find("done,") - 5, "far");
   write_file_atomically(directory / "realizations.csv", header + row);
+  EXPECT_TRUE(contains(error_of(directory.path()), "realizations.csv:2 does not agree with its checksum"));
+  const auto without_checksum = [](const std::string& line) { return line.substr(0, line.rfind(',')) + "\n"; };
+  write_file_atomically(directory / "realizations.csv", without_checksum(header) + without_checksum(row));
   EXPECT_TRUE(contains(error_of(directory.path()), "\"far\" is not a number"));
   write_file_atomically(directory / "realizations.csv", header + "0,done,1\n");
   EXPECT_TRUE(contains(error_of(directory.path()), "realizations.csv:2"));

@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
   talus::RunResult run = result(name, at);
   run.quality = quality;
   talus::fixtures::write(out / "snapshots.vtkhdf", "profile of " + name);
-  talus::fixtures::write(out / "result.tmp", talus::result_json(run, provenance).dump());
+  talus::fixtures::write(out / "result.tmp", talus::with_checksum(talus::result_json(run, provenance)));
   fs::rename(out / "result.tmp", out / "result.json");
   append(diary, "end " + name + "\n");
   return 0;

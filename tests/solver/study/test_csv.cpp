@@ -1,8 +1,10 @@
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "studies.hpp"
 #include "study/publish.hpp"
+#include "support/digest.hpp"
 #include "support/error.hpp"
 
 using namespace talus;
@@ -41,6 +43,16 @@ const std::string head_0_1_0 = head.substr(0, head.find(",verdict")) + "\n";
 
 }  // namespace
 
+/// A table with the FNV-1a hash of each line after it.
+std::string with_checksums(const std::string& table) {
+  std::istringstream in(table);
+  std::string line, all;
+  std::getline(in, line);
+  all = line + ",checksum\n";
+  while (std::getline(in, line)) all += line + "," + hex_digits(fnv1a64(line)) + "\n";
+  return all;
+}
+
 TEST(Csv, OneLineForEachRecord) {
   Record r = done(3, 34.5);
   r.measures.centre_of_mass_x = 0.1 + 0.2;  // 17 digits
@@ -50,11 +62,21 @@ TEST(Csv, OneLineForEachRecord) {
   r.lower_bounds = "influence_zone_m centre_of_mass_x_m";
   EXPECT_EQ(
       table_of({r, failed(7, "diverged: at step 12, \"fast\"\nreally"), failed_record(8, "invalid result: a: b")}),
-      head +
-          "3,done,34.5,34.2,33.8,34.1,0.30000000000000004,24.7,0.25,1003,1.5,0000000000000013,,doubtful,"
-          "\"left_terrain: 2 of 5 left\",\"influence_zone_m centre_of_mass_x_m\",33.9,2,0.6\n"
-          "7,failed,,,,,,,,,,,\"diverged: at step 12, \"\"fast\"\" really\",,,,,,\n"
-          "8,failed,,,,,,,,,,,\"invalid result: a: b\",invalid,\"a: b\",,,,\n");
+      with_checksums(head +
+                     "3,done,34.5,34.2,33.8,34.1,0.30000000000000004,24.7,0.25,1003,1.5,0000000000000013,,doubtful,"
+                     "\"left_terrain: 2 of 5 left\",\"influence_zone_m centre_of_mass_x_m\",33.9,2,0.6\n"
+                     "7,failed,,,,,,,,,,,\"diverged: at step 12, \"\"fast\"\" really\",,,,,,\n"
+                     "8,failed,,,,,,,,,,,\"invalid result: a: b\",invalid,\"a: b\",,,,\n"));
+}
+
+TEST(Csv, ALineThatWasChangedIsFound) {
+  const std::string good = table_of({done(3, 34.5), done(4, 35.5)});
+  for (const auto& [from, to] : {std::pair{"34.5", "94.5"}, {"\n4,", "\n5,"}, {"done,35.5", "done,3.55"}}) {
+    std::string changed = good;
+    changed.replace(changed.find(from), std::string(from).size(), to);
+    EXPECT_NE(refusal(changed).find("does not agree with its checksum"), std::string::npos) << changed;
+  }
+  EXPECT_NE(refusal(good.substr(0, good.size() - 3)).find("t.csv:3 does not agree"), std::string::npos);
 }
 
 TEST(Csv, ReadsBackExactly) {
@@ -142,7 +164,7 @@ TEST(Csv, AcceptsLineEndsOfOtherSystems) {
 }
 
 TEST(Csv, NamesFileLineAndFault) {
-  const std::string good = table_of({done(3, 34.5)});
+  const std::string good = head + csv_line(done(3, 34.5));
   EXPECT_NE(refusal("").find("t.csv is empty"), std::string::npos);
   EXPECT_NE(refusal("a,b\n").find("t.csv:1 is not the header of a table of Talus: the column \"a\" is unknown"),
             std::string::npos);

@@ -6,6 +6,7 @@
 
 #include "support/error.hpp"
 #include "support/json.hpp"
+#include "temporary_directory.hpp"
 
 namespace talus {
 namespace {
@@ -83,6 +84,34 @@ TEST(ReadText, RefusesHugeFiles) {
   std::filesystem::resize_file(path, (std::size_t{16} << 20) + 1);  // sparse
   EXPECT_THROW(read_text(path), ConfigError);
   std::filesystem::remove(path);
+}
+
+TEST(Checksum, TellsADamagedFileFromAWholeOne) {
+  const Json document = {{"zone", 24.29}, {"text", "a \"checksum\": b"}, {"list", {1, 2}}};
+  const std::string whole = with_checksum(document);
+  EXPECT_TRUE(whole.starts_with("{\n  \"zone\": 24.29,\n"));
+  const test::TemporaryDirectory directory;
+  const auto read = [&](const std::string& text) {
+    std::ofstream(directory / "a.json", std::ios::binary) << text;
+    Json found = read_json(directory / "a.json", 1 << 16);
+    found.erase("checksum");
+    return found;
+  };
+  EXPECT_EQ(read(whole), document);
+  EXPECT_EQ(read(document.dump(2) + "\n"), document);  // of an earlier version
+  for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {
+    std::string damaged = whole;
+    damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
+    try {
+      Json found = read(damaged);
+      if (found.size() > document.size()) found.erase(std::prev(found.end()));  // a damaged key "checksum"
+      EXPECT_EQ(found, document) << damaged;
+    } catch (const IoError&) {
+    }
+  }
+  std::string other = whole;
+  other.replace(other.find("24.29"), 5, "94.29");
+  EXPECT_THROW(read(other), IoError);
 }
 
 }  // namespace
