@@ -110,14 +110,28 @@ HWY_INLINE Symmetric<Real> cauchy(Real p, Deviator<Real> t) {
   return {t.xx - p, t.yy - p, t.xy};
 }
 
-/// s with its shear on the plane of unit normal n reversed, as a frictionless wall mirrors it:
-/// s - 2 s_tn (t n^T + n t^T), t = (-n_y, n_x).
+/// Shear of s on the plane of unit normal n: t.s.n, t = (-n_y, n_x).
+template <class Real>
+HWY_INLINE Real shear_on(Symmetric<Real> s, Vector<Real> n) {
+  const Vector<Real> s_n = s * n;
+  return fms(n.x, s_n.y, n.y * s_n.x);
+}
+/// s with `change` added to that shear: s + change (t n^T + n t^T).
+template <class Real>
+HWY_INLINE Symmetric<Real> add_shear(Symmetric<Real> s, Vector<Real> n, Real change) {
+  const Real xx = (change * Real(2.0)) * (n.x * n.y);
+  return {s.xx - xx, s.yy + xx, fma(change, fms(n.x, n.x, n.y * n.y), s.xy)};
+}
+/// s with that shear reversed, as a frictionless wall mirrors it.
 template <class Real>
 HWY_INLINE Symmetric<Real> mirrored(Symmetric<Real> s, Vector<Real> n) {
-  const Vector<Real> s_n = s * n;
-  const Real two_s_tn = Real(2.0) * fms(n.x, s_n.y, n.y * s_n.x);
-  const Real xx = (two_s_tn * Real(2.0)) * (n.x * n.y);
-  return {s.xx + xx, s.yy - xx, fnma(two_s_tn, fms(n.x, n.x, n.y * n.y), s.xy)};
+  return add_shear(s, n, Real(-2.0) * shear_on(s, n));
+}
+/// s with that shear taken back to at most `limit` >= 0.
+template <class Real>
+HWY_INLINE Symmetric<Real> with_bounded_shear(Symmetric<Real> s, Vector<Real> n, Real limit) {
+  const Real shear = shear_on(s, n);
+  return add_shear(s, n, min(max(shear, Real(0.0) - limit), limit) - shear);
 }
 
 }  // namespace talus::HWY_NAMESPACE

@@ -152,7 +152,7 @@ struct WallStressSum {
     t = fma(W, Deviator<Real>{f.s.xx + f.p, f.s.yy + f.p, f.s.xy}, t);
   }
 
-  /// @param of_wall  strength of the wall, infinite where it has none; the soil there yields at the smaller of both
+  /// @param of_wall  strength of the wall, infinite where it has none; a weaker one bounds the shear along the wall
   /// @param smooth   where the boundary has WallSlip::free_slip
   template <class Mask>
   HWY_INLINE WallStress<Real> value(const FlowConstants& k, Vector<Real> normal, MohrCoulomb<Real> of_wall,
@@ -161,16 +161,20 @@ struct WallStressSum {
     const Real inverse = select_or_zero(covered, Real(1.0) / weight);
     Real p_wall = p * inverse;
     if (k.numerics.tension_cutoff) p_wall = max(p_wall, Real(0.0));
-    const Real p_mean = p_soil * inverse;
+    const Real p_mean = p_soil * inverse, factor(yield_factor(k.rheology.shear_rate));
     const MohrCoulomb<Real> soil{c * inverse, tan_phi * inverse};
-    const MohrCoulomb<Real> weaker{min(soil.c, of_wall.c), min(soil.tan_phi, of_wall.tan_phi)};
-    const auto yield = [&](MohrCoulomb<Real> of, Real at) HWY_ATTR {
-      return Real(yield_factor(k.rheology.shear_rate)) * yield_stress(of.c, of.tan_phi, at);
-    };
+    const auto yield = [&](MohrCoulomb<Real> of, Real at)
+                           HWY_ATTR { return factor * yield_stress(of.c, of.tan_phi, at); };
     const Real size = magnitude(t) * inverse;
-    const Real share = inverse * deviator_growth(size, p_wall, p_mean, yield(weaker, p_wall), yield(soil, p_mean));
+    const Real growth = deviator_growth(size, p_wall, p_mean, yield(soil, p_wall), yield(soil, p_mean));
+    const Real share = inverse * select(smooth, Real(1.0), growth);
     Symmetric<Real> s{fms(t.xx, share, p_wall), fms(t.yy, share, p_wall), t.xy * share};
     if (any(smooth)) s = select(smooth, mirrored(s, normal), s);
+    const auto weaker = of_wall.tan_phi < soil.tan_phi;
+    if (any(weaker)) {
+      const MohrCoulomb<Real> both{min(soil.c, of_wall.c), of_wall.tan_phi};
+      s = select(weaker, with_bounded_shear(s, normal, yield(both, p_wall)), s);
+    }
     return {s, p_wall, select_or_zero(covered, fma(q, inverse, Real(1.0)))};
   }
 };

@@ -159,12 +159,12 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     const double factor = k.rheology.shear_rate == ShearRate::paper ? std::sqrt(3.0) : 1.0, tzz = -txx - tyy;
     const double size = std::sqrt((txx * txx + tyy * tyy + tzz * tzz) / 2 + txy * txy) / sum, p_mean = p_soil / sum;
     const double ratio = p_soil > 0 ? std::clamp(r.wall_p[q] / p_mean, 0.0, 6.0) : 1.0;
-    const WallFriction& of_wall = k.boundaries[static_cast<std::size_t>(w.boundary[q])];
     const double yield_soil = factor * (cohesion + tan_phi * std::max(p_mean, 0.0)),
-                 yield_wall = factor * (std::min(cohesion, of_wall.c) +
-                                        std::min(tan_phi, of_wall.tan_phi) * std::max(r.wall_p[q], 0.0));
+                 yield_wall = factor * (cohesion + tan_phi * std::max(r.wall_p[q], 0.0));
     double growth = 1;
-    if (size > yield_soil)
+    if (slip(q) == WallSlip::free_slip)
+      growth = 1;
+    else if (size > yield_soil)
       growth = (std::min(ratio * yield_soil, yield_wall) + ratio * (size - yield_soil)) / size;
     else if (size > 0)
       growth = std::min(ratio, yield_wall / size);
@@ -176,6 +176,15 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       sxx = c * c * nn + z * z * tt - 2 * c * z * nt;
       syy = z * z * nn + c * c * tt + 2 * c * z * nt;
       sxy = c * z * nn - c * z * tt + (c * c - z * z) * nt;
+    }
+    const WallFriction& of_wall = k.boundaries[static_cast<std::size_t>(w.boundary[q])];
+    if (of_wall.tan_phi < tan_phi) {
+      const double nx = w.nx[q], ny = w.ny[q], shear = nx * ny * (syy - sxx) + (nx * nx - ny * ny) * sxy;
+      const double limit = factor * (std::min(cohesion, of_wall.c) + of_wall.tan_phi * std::max(r.wall_p[q], 0.0));
+      const double back = shear - std::clamp(shear, -limit, limit);
+      sxx += 2 * nx * ny * back;
+      syy -= 2 * nx * ny * back;
+      sxy -= (nx * nx - ny * ny) * back;
     }
     r.wall_sxx[q] = sxx, r.wall_syy[q] = syy, r.wall_sxy[q] = sxy;
   }
