@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Single flipped bits over all files of a study: the same command and `talus stats` give the same numbers, or say what is
-damaged. TALUS_FLIPS=1000 for the figure in service/README.md."""
+damaged. More of them: tests/service/README.md."""
 
 import collections
 import json

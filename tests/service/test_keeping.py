@@ -11,7 +11,7 @@ import time
 
 from daemon import TALUS, TALUSD, ServiceTest, digests, main, study
 
-SUBMISSIONS = int(os.environ.get("TALUS_SUBMISSIONS", "60"))  # 20000 for the figure in service/README.md
+SUBMISSIONS = int(os.environ.get("TALUS_SUBMISSIONS", "60"))  # more: tests/service/README.md
 CLIENTS = int(os.environ.get("TALUS_CLIENTS", "10"))
 
 
