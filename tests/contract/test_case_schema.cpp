@@ -61,9 +61,10 @@ TEST(CaseSchema, ClosesEveryObject) {
 TEST(CaseSchema, UnitsStandInTheKeys) {
   const test::SchemaCheck schema("case");
   const std::pair<const char*, const char*> suffixes[] = {
-      {"_kg_m3", "kg/m3"}, {"_m_s2", "m/s2"}, {"_m_s", "m/s"}, {"_Pa_s", "Pa s"},   {"_Pa", "Pa"},
-      {"_deg", "deg"},     {"_1_s", "1/s"},   {"_mm", "mm"},   {"_kN_m3", "kN/m3"}, {"_kPa", "kPa"},
-      {"_m", "m"},         {"_s", "s"},       {"", "-"}};
+      {"_kg_m3", "kg/m3"}, {"_m_s2", "m/s2"}, {"_m_s", "m/s"},           {"_Pa_s", "Pa s"},
+      {"_Pa", "Pa"},       {"_deg", "deg"},   {"_1_s", "1/s"},           {"_mm", "mm"},
+      {"_kN_m3", "kN/m3"}, {"_kPa", "kPa"},   {"_spacings", "spacings"}, {"_m", "m"},
+      {"_s", "s"},         {"", "-"}};
   for_each_key(schema.document(), "", [&](const std::string& pointer, const json& key, bool) {
     if (key["type"] != "number") return;
     for (const auto& [suffix, unit] : suffixes)
@@ -84,9 +85,15 @@ TEST(CaseSchema, DefaultsAreTheReaders) {
   document["material"]["mu_i"] = {{"high_rate_friction_angle_deg", 40}, {"grain_diameter_m", 0.002}};
   document["slide"]["outlines"][0]["material"]["mu_i"] = document["material"]["mu_i"];
   const json switched_on = json::parse(load_case(document, "").resolved.dump());
+  document["particle_lattice"] = {{"angle_deg", 30}};
+  const json turned = json::parse(load_case(document, "").resolved.dump());
+  document["particle_lattice"] = {{"shift_x_spacings", 0.25}};
+  const json shifted = json::parse(load_case(document, "").resolved.dump());
   std::size_t defaults = 0;
   for_each_key(schema.document(), "", [&](const std::string& pointer, const json& key, bool) {
-    const json& resolved = plain.contains(json::json_pointer(pointer)) ? plain : switched_on;
+    const json& lattice = pointer.ends_with("shift_x_spacings") ? turned : shifted;
+    const json& of_section = pointer.starts_with("/particle_lattice") ? lattice : switched_on;
+    const json& resolved = plain.contains(json::json_pointer(pointer)) ? plain : of_section;
     if (!key.contains("default")) return;
     ++defaults;
     const json::json_pointer at(pointer);

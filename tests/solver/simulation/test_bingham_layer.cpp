@@ -29,6 +29,7 @@ double profile_error(Yield yield, Integrator integrator, double dx) {
   m.dx = dx;
   m.rheology.yield = yield;
   m.numerics.integrator = integrator;
+  m.walls.b_max = 3.0;
   m.time.end = 1.0;  // six times the viscous time rho h^2/(2.5 eta)
   Simulation simulation(m, plan_particles(m));
   const Soil& soil = simulation.soil();
@@ -47,17 +48,17 @@ double profile_error(Yield yield, Integrator integrator, double dx) {
   return std::sqrt(sum / n) / U;
 }
 
-// The mirrored velocity of the wall is capped at b_max = 1.5, which lets the lowest particles slip a little: the error
-// falls with dx (0.125 at 0.05 m, 0.051 at 0.025 m). Half the viscosity or the yield stress would give an error over
-// 0.4.
+// The cap b_max of the wall's mirrored velocity lets the lowest particles slip a little: with 3 the error is 0.071 at
+// 0.05 m and 0.024 at 0.025 m, with the default of 1.5, which keeps deposits calm, 0.148 and 0.055. Half the viscosity
+// or the yield stress would give an error over 0.4.
 TEST(BinghamLayer, ElasticYieldFindsTheClosedForm) {
-  EXPECT_LT(profile_error(Yield::elastic, Integrator::rk2, 0.05), 0.14);
+  EXPECT_LT(profile_error(Yield::elastic, Integrator::rk2, 0.05), 0.08);
 }
 TEST(BinghamLayer, RegularizedYieldFindsTheClosedForm) {
-  EXPECT_LT(profile_error(Yield::regularized, Integrator::rk2, 0.05), 0.14);
+  EXPECT_LT(profile_error(Yield::regularized, Integrator::rk2, 0.05), 0.08);
 }
 TEST(BinghamLayer, LeapfrogFindsTheClosedForm) {
-  EXPECT_LT(profile_error(Yield::elastic, Integrator::leapfrog, 0.05), 0.14);
+  EXPECT_LT(profile_error(Yield::elastic, Integrator::leapfrog, 0.05), 0.08);
 }
 
 }  // namespace

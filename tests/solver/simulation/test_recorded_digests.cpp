@@ -1,5 +1,5 @@
 // The same bits as an earlier program: short runs of every choice of the method (recorded_digests.json, made by
-// record_digests.py), and runs of the studies that the validation rests on (tests/validation/records).
+// record_digests.py).
 
 #include <gtest/gtest.h>
 #include <omp.h>
@@ -97,43 +97,6 @@ TEST_F(RecordedDigests, RunsThatWereInterruptedAndResumed) {
     finish(second, c);
     expect_as_recorded(second, run);
   }
-}
-
-/// One row of a table of runs, by its index in the first column.
-std::vector<std::string> row_of(const std::string& path, const std::string& index) {
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    std::vector<std::string> cells;
-    std::istringstream text(line);
-    for (std::string cell; std::getline(text, cell, ',');) cells.push_back(cell);
-    if (!cells.empty() && cells[0] == index) return cells;
-  }
-  return {};
-}
-
-/// One run of a study of tests/validation/records: its digest stands in the eleventh column of the study's table.
-void expect_the_digest_of_the_study(const std::string& study, const char* file, const char* row, RunIdentity identity) {
-  if (!has_fused_multiply_add()) GTEST_SKIP() << "the digests are those of AVX2 and better";
-  omp_set_num_threads(1);
-  const std::string directory = source + "/tests/validation/records/" + study;
-  // The studies are older than the cells that are cut at the outlines.
-  const Case c = load_case(directory + "/case.resolved.json", std::vector<std::string>{whole_cells}).value;
-  identity.seed = read_json(directory + "/plan.json").at("seed");
-  Simulation simulation = simulation_of(c, identity);
-  finish(simulation, c);
-  const auto cells = row_of(directory + "/" + file, row);
-  ASSERT_GE(cells.size(), 12u);
-  EXPECT_EQ(simulation.result().digest, cells[11]);
-}
-
-TEST(StudyRecords, ARealizationWithNinetyFivePercentOfTheVariance) {
-  expect_the_digest_of_the_study("case9-share", "realizations.csv", "98", {0, 98, 0.0});
-}
-TEST(StudyRecords, ARealizationWithModesInTheOrderOfThePaper) {
-  expect_the_digest_of_the_study("case1-diagonal", "realizations.csv", "3", {0, 3, 0.0});
-}
-TEST(StudyRecords, AReplicateOfTheNoiseFloor) {
-  expect_the_digest_of_the_study("case7-share", "noise_floor.csv", "1", {0, 0, 1e-6});
 }
 
 }  // namespace

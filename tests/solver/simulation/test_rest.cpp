@@ -78,7 +78,9 @@ TEST(Rest, HoldsForEveryDensityTreatmentKernelAndIntegrator) {
     option.set(m);
     Simulation simulation(m, plan_particles(m));
     while (!simulation.finished()) simulation.step(m.time.end);
-    EXPECT_LT(profile_error(simulation, 1.0), 0.05) << option.name;
+    // The vertical stress carries the weight. The regularised law keeps no deviator at rest, but chatters.
+    const bool elastic = m.rheology.yield == Yield::elastic;
+    EXPECT_LT(profile_error(simulation, 1.0, elastic), 0.03) << option.name;
     EXPECT_LT(max_speed(simulation.soil()), 0.08)
         << option.name;  // the regularised law chatters, the others stay below 0.02
     EXPECT_EQ(simulation.result().penetrated, 0) << option.name;
@@ -92,7 +94,7 @@ TEST(Rest, StressFreeStartSettlesToTheSameVerticalStress) {
 
   m.numerics.h_over_dx = 1.2;                       // the default's wider kernel is 9 % off with ten rows
   m.boundaries.front().slip = WallSlip::free_slip;  // rough side walls would carry part of the weight, as in a silo
-  m.time.end = 2.0;
+  m.time.end = 8.0;  // the wave of the sudden start is smooth, so that the artificial viscosity leaves it alone
   Simulation simulation(m, plan_particles(m));
   EXPECT_EQ(simulation.frame().pressure[0], 0.0);
   while (!simulation.finished()) simulation.step(m.time.end);

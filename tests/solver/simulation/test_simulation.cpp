@@ -172,7 +172,7 @@ TEST(Simulation, ABlockOnASmootherWallSlidesAtTheWallsFriction) {
     m.boundaries.front().phi = phi_wall_deg * degree;
     m.time.end = 0.8;
     m.numerics.initial_pressure = InitialPressure::hydrostatic;
-    if (slip == WallSlip::friction) m.materials[0].c = 0;
+    m.boundaries.front().c = 0.0;
     Simulation simulation(m, plan_particles(m));
     run(simulation, m.time.end);
     double momentum = 0.0;  // along the slope
@@ -222,10 +222,11 @@ TEST(Simulation, ASlabIsHeldByTheWallsCohesionUpToItsWeightAlongTheSlope) {
 TEST(Simulation, BlocksOnTwoBoundariesSlideEachAtTheFrictionOfItsOwn) {
   Model m;
   m.terrain.bed = {{-1, 0}, {12, 0}};
-  m.boundaries = {{.name = "rock", .line = {{{-1, 0}, {5, 0}}}, .slip = WallSlip::friction, .phi = 15 * degree},
-                  {.name = "ice", .line = {{{5, 0}, {12, 0}}}, .slip = WallSlip::free_slip}};
+  m.boundaries = {
+      {.name = "rock", .line = {{{-1, 0}, {5, 0}}}, .slip = WallSlip::friction, .phi = 15 * degree, .c = 0.0},
+      {.name = "ice", .line = {{{5, 0}, {12, 0}}}, .slip = WallSlip::free_slip}};
   m.slide = {{{{0, 0}, {3, 0}, {3, 0.5}, {0, 0.5}}, 0}, {{{6, 0}, {8, 0}, {8, 0.5}, {6, 0.5}}, 1}};
-  m.materials = {{"sand", 2000, 45 * degree, 0, 0}, {"clay", 2000, 45 * degree, 3000, 0}};
+  m.materials = {{"sand", 2000, 45 * degree, 3000, 0}, {"clay", 2000, 45 * degree, 3000, 0}};
   m.g = {9.81 * std::sin(30 * degree), -9.81 * std::cos(30 * degree)};
   m.time.end = 0.6;
   for (const auto precision : {Precision::single, Precision::full}) {
