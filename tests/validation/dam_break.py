@@ -11,7 +11,7 @@ from snapshots import Snapshots
 
 TITLE = "Water dam break"
 SOURCE = "Martin & Moyce, Phil. Trans. R. Soc. A 244 (1952) 312-324, n^2 = 2; T = t sqrt(2 g/a), Z = front/a"
-NOT_MET = {"rms error of the front, T <= 3": 0.14, "rms error, finest over coarsest": 2.0}
+NOT_MET = {"rms error of the front, T <= 3": 0.17, "rms error, finest over coarsest": 2.0}
 REMARKS = ("The computed front is ahead of the measured one from the start, and more so at finer spacings. In the "
            "model the dam vanishes at once and the water has almost no friction on the floor; in the experiment the "
            "dam takes time to open, and the origin of time was set, not observed. A single delay of the release for "
@@ -21,10 +21,10 @@ REMARKS = ("The computed front is ahead of the measured one from the start, and 
            "viscosity it was 5.9 and 7.0 % at a/40 (each tried once), compared with 9.7. A delay can hide such an "
            "error only in part: the limit for the delayed front is twice the difference between the experiment's two "
            "sizes, which gravity at 0.8 exceeds. The energy shows that the water moves correctly: the potential "
-           "energy becomes kinetic energy, except for what the artificial viscosity dissipates, mostly in a layer on "
-           "the floor. With nu = alpha h c/8 that layer is about sqrt(nu t) thick, so the loss falls with the square "
-           "root of the spacing; at T = 2, over a depth of 0.6 a, it is estimated as sqrt(dx/a). (These limits were "
-           "set after the runs, from the reasons given.) The shipped case `dam-break.json` has `free_slip` walls; "
+           "energy becomes kinetic energy. With the whole jump of velocity the artificial viscosity took 11 % of it until "
+           "T = 2, mostly in a layer on the floor, and so hid a part of the missing gate: the error was 9.7 % at a/40. "
+           "Now it takes 1 %, and the error is that of water without friction, which the limit of the unmet criterion "
+           "follows. (These limits were set after the runs, from the reasons given.) The shipped case `dam-break.json` has `free_slip` walls; "
            "here they are `no_slip`, the default.")
 A = 0.05715  # width of the column [m]
 LATEST = 3.0
@@ -89,13 +89,11 @@ def scatter():
 
 def criteria(numbers):
     levels = numbers["levels"]
-    spacing_ratio = levels[0]["spacings_in_a"] / levels[-1]["spacings_in_a"]
     finest = f"a/{levels[-1]['spacings_in_a']}"
     return [at_most(f"rms error of the front, T <= 3, {finest}", levels[-1]["rms"], 0.08),
             at_most("rms error, finest over coarsest", levels[-1]["rms"] / levels[0]["rms"], 1.0),
             at_most(f"rms error with the release delayed, T <= 3, {finest}", levels[-1]["rms_after_delay"], 2 * scatter(), "twice the scatter of the experiment"),
-            at_most(f"energy lost until T = 2, {finest}", 1 - levels[-1]["kept"], levels[-1]["spacings_in_a"] ** -0.5, "estimate of a layer on the floor, sqrt(dx/a)"),
-            at_most("energy lost, finest over coarsest", (1 - levels[-1]["kept"]) / (1 - levels[0]["kept"]), spacing_ratio ** 0.3, "half order is expected, 0.3 asked for")]
+            at_most(f"energy lost until T = 2, {finest}", 1 - levels[-1]["kept"], 0.02, "water has almost no friction")]
 
 
 def section(numbers, directory):

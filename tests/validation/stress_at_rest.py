@@ -11,9 +11,11 @@ from snapshots import Snapshots
 
 TITLE = "Stress at rest"
 SOURCE = "equilibrium: on a plane of theta the stress across it is rho g d cos(theta) and the shear stress rho g d sin(theta) at the depth d below the surface, measured across the layer; water has p = rho g d"
-NOT_MET = {"water, dx = 0.1 m: load": 0.015, "incline, dx = 0.1 m: rms error of the stress across": 0.04, "incline, dx = 0.1 m: rms error of the shear": 0.04, "incline, dx = 0.1 m: load": 0.03}
+NOT_MET = {"water, dx = 0.1 m: load": 0.015, "incline, dx = 0.1 m: rms error of the stress across": 0.08, "incline, dx = 0.1 m: rms error of the shear": 0.04, "incline, dx = 0.1 m: load": 0.03}
 REMARKS = ("The soil between smooth walls does not sway, and its stress is that of the weight within a hundredth. On the "
-           "incline it takes the layer some seconds to come to rest, in which its shear waves are hardly damped. The load "
+           "incline it takes the layer some seconds to come to rest, in which its shear waves are hardly damped; what the "
+           "elastic law keeps of them alternates from row to row, grows with the shear modulus (3 % with 0.1 rho c^2, 8 % "
+           "with the default of 0.3) and falls with the spacing (8 % with 10 rows, 5 % with 20). The load "
            "is that of the lowest row with the weight below its particles added; its error does not fall with the spacing.")
 DEPTH, SECONDS = 1.0, 5.0  # [m], [s]
 TIMES = [0.1 * k for k in range(30, 50)]  # over which stresses are averaged: elastic soil sways for a while [s]
