@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t max_bytes = std::size_t{1} << 28;
+constexpr std::size_t max_record_bytes = std::size_t{1} << 28;
 
 JobRecord from_json(const Json& json) {
   JobRecord record{.job = {.id = json.at("id"), .process = json.at("process"), .subject = json.at("subject")},
@@ -52,14 +52,14 @@ void write_job_record(const fs::path& directory, const NewJob& job, Milliseconds
                      {"particles", job.particles},
                      {"steps", job.steps},
                      {"created_ms", created},
-                     {"case", read_json(StudyPaths{directory}.resolved_case(), max_bytes)}};
+                     {"case", read_json(StudyPaths{directory}.resolved_case(), max_record_bytes)}};
   write_file_atomically(job_record_path(directory), with_checksum(json));
 }
 
 std::optional<JobRecord> find_job_record(const fs::path& directory) {
   const fs::path path = job_record_path(directory);
   if (!fs::exists(path)) return std::nullopt;
-  return read_json(path, max_bytes, "a job record of talusd", from_json);
+  return read_json(path, max_record_bytes, "a job record of talusd", from_json);
 }
 
 }  // namespace talus::service

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t max_case_bytes = std::size_t{1} << 28;
+constexpr std::size_t max_stored_case_bytes = std::size_t{1} << 28;
 
 /// What `read` gives; nothing, and a line in the log, where the file is damaged.
 template <class Read>
@@ -58,7 +58,7 @@ fs::path checked_case(const DataDirectory& data, const Job& job) {
   const fs::path directory = data.job(job.id), path = StudyPaths{directory}.resolved_case();
   if (!fs::exists(directory)) throw IoError("the directory of the job is missing: " + directory.string());
   const auto record = unless_damaged(job, [&] { return find_job_record(directory); });
-  const auto found = unless_damaged(job, [&] { return std::optional(read_json(path, max_case_bytes)); });
+  const auto found = unless_damaged(job, [&] { return std::optional(read_json(path, max_stored_case_bytes)); });
   if (!record && !found) throw IoError("the case of the job is lost: " + path.string());
   if (!record) return path;
   const Json document = with_realizations(record->document, job.planned);
@@ -76,7 +76,7 @@ void repair_directory(const DataDirectory& data, const Job& job, const fs::path&
   const auto plan = unless_damaged(job, [&] { return find_plan(directory); });
   const auto marker = unless_damaged(job, [&] { return find_output_marker(directory); });
   const auto make_again = [&](const fs::path& file) {
-    write_file_atomically(directory / file, read_file(made / file, max_case_bytes));
+    write_file_atomically(directory / file, read_file(made / file, max_stored_case_bytes));
     log_error("made_again", {{"job", job.id}, {"file", (directory / file).string()}});
   };
   if (!plan || plan->of.hash != job.case_hash || plan->seed != right->seed)
