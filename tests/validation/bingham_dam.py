@@ -14,14 +14,15 @@ TITLE = "Bingham dam break"
 SOURCE = ("slow, thin: lubrication theory, q = rho g S Y^2 (3 h - Y)/(6 eta), Y = h - tau_y/(rho g S) where it is positive, S the slope of the surface (Liu & Mei, J. Fluid Mech. 207 "
           "(1989) 505-529; Matson & Hogg, J. Non-Newtonian Fluid Mech. 142 (2007) 79-94), integrated here. Tailings: gypsum, East Texas 1966, 11 m deep, 1400 kg/m3, tau_y = 1 kPa, eta = 50 Pa s; "
           "seen: about 300 m in 60 to 120 s (Jeyapalan, Duncan & Seed, J. Geotech. Eng. 109 (1983) 172-189)")
-NOT_MET = {"run-out of the tailings over the field's, less 1": 0.45}
+NOT_MET = {"run-out of the tailings over the field's, less 1": 0.45, "run-out of the tailings over that of a soil everywhere": 1.6}
 REMARKS = ("The front of the slow block is the point where the surface through its particles is 0.2 m high, which is "
            "known to within one spacing; its farthest particles are ahead of the thin tip of the theory, which the "
            "last two rows cannot represent. The field data are quoted from later studies; the original was not "
            "available. The tailings are compared with the plane model as it is: the real flow could spread sideways, "
-           "and the shape of the pond is not known here. The run-out is shorter than in the field and has not "
-           "converged in the spacing. With these parameters even a soil that stops everywhere at yield reaches only "
-           "277 m: the 300 m of the field need inertia or weaker soil. (A three-dimensional Navier-Stokes model with "
+           "and the shape of the pond is not known here. The run-out was a quarter shorter than in the field "
+           "while the artificial viscosity slowed the flow and thin cohesive soil stuck to the floor too firmly. Now "
+           "inertia carries the soil half as far again as where it would stop everywhere at yield, 277 m, and its sheet, "
+           "thinner than a row in the end, a third or more too far. It has not converged in the spacing. (A three-dimensional Navier-Stokes model with "
            "a Bingham fluid found 73 % of the observed distance, Appl. Sci. 10 (2020) 6501; that our value is close "
            "to it is no evidence.) The rate at the end follows from how a Bingham fluid comes to rest, like 1/t.")
 HALF_WIDTH, YIELD, VISCOSITY = 4.0, 0.02, 5000.0  # of the slow block: [m], tau_y/(rho g H), [Pa s]

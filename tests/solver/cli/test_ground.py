@@ -65,17 +65,21 @@ class Ground(Directory):
         free = self.run_case(self.without("thin-wall.json", bed_m=[v for v in wall if v[0] < face - 1 or v[0] > face + 1]))
         self.assertGreater(free["influence_zone_m"], face + 1)
         reasons = {reason["check"] for reason in free["quality"]["reasons"]}
-        self.assertEqual(reasons, {"still_moving", "numerical_dissipation"}, "no false alarm of the ground")
+        self.assertEqual(reasons, set(), "no false alarm of the ground")
 
     def test_the_noise_of_a_survey_does_not_move_the_front(self):
-        """A plane that runs into a flat, 5,001 vertices, noise up to 0.2 spacings: the front of the smooth bed."""
+        """A plane that runs into a flat, 5,001 vertices, noise up to 0.2 spacings: the front of the smooth bed.
+
+        Soil without a viscosity, at 19 m/s on such a bed, throws particles tens of metres ahead; those runs are doubtful.
+        """
         fronts = []
         for noise in (0.0, 0.05, 0.1):
             draw = random.Random(7)
             bed = [[round(0.04 * i, 3), round(max(0.0, 40.0 - 0.02 * i) + draw.gauss(0.0, noise), 3)] for i in range(5001)]
             case = {"title": "noisy plane", "particle_spacing_m": 0.5, "terrain": {"bed_m": bed},
                     "slide": {"outlines": [{"outline_m": [[2, 39.6], [42, 19.6], [42, 24.1], [2, 44.1]]}]},
-                    "material": {"density_kg_m3": 2000, "friction_angle_deg": 20}, "time": {"end_s": 10}}
+                    "material": {"density_kg_m3": 2000, "friction_angle_deg": 20, "viscosity_Pa_s": 1000},
+                    "time": {"end_s": 10}}
             path = self.dir / f"noise-{noise}.json"
             path.write_text(json.dumps(case))
             fronts.append(self.front(path))
