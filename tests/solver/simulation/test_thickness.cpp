@@ -10,11 +10,11 @@
 namespace talus {
 namespace {
 
-constexpr double spread = 3.0;                           ///< half width of the weight in spacings
-constexpr double variance = spread * spread / 7.0;       ///< of the weight, in spacings squared: integral of d^2 w(d)
-constexpr double wedge_height = 4.0, wedge_length = 16;  ///< [m]
+constexpr double spread = 3.0;                            ///< half width of the weight in spacings
+constexpr double variance = spread * spread / 7.0;        ///< of the weight, in spacings squared: integral of d^2 w(d)
+constexpr double wedge_profile = 4.0, wedge_length = 16;  ///< [m]
 
-double wedge_height(double s) { return s < 0.0 ? 0.0 : std::max(0.0, wedge_height * (1.0 - s / wedge_length)); }
+double wedge_profile(double s) { return s < 0.0 ? 0.0 : std::max(0.0, wedge_profile * (1.0 - s / wedge_length)); }
 double parabola(double s) { return s < 0.0 ? 0.0 : std::max(0.0, 3.0 * (1.0 - s * s / 144.0)); }
 
 /// Soil of height h(s) on the square cells of a lattice: cells of a column are cut at the surface, which makes their
@@ -56,7 +56,7 @@ TEST(Thickness, IsThatOfALayerAndHoldsAllSoil) {
 TEST(FrontAtThickness, OfAWedge) {  // 4 (1 - s/16) = 0.5 at s = 14
   for (const double dx : {0.2, 0.1})
     for (const double phase : {0.0, 0.3, 0.5})
-      EXPECT_NEAR(*front_at_thickness(deposit(wedge_height, wedge_length, dx, phase), dx, 0.5), 14.0, 0.02 * dx);
+      EXPECT_NEAR(*front_at_thickness(deposit(wedge_profile, wedge_length, dx, phase), dx, 0.5), 14.0, 0.02 * dx);
 }
 
 TEST(FrontAtThickness, OfAParabola) {
@@ -68,8 +68,8 @@ TEST(FrontAtThickness, OfAParabola) {
 
 TEST(FrontAtThickness, HardlyMovesWhenTheSpacingIsHalved) {
   for (const double t : {0.3, 0.6, 1.0}) {
-    const double coarse = *front_at_thickness(deposit(wedge_height, wedge_length, 0.2), 0.2, t);
-    EXPECT_NEAR(*front_at_thickness(deposit(wedge_height, wedge_length, 0.1), 0.1, t), coarse, 0.1 * 0.1) << t;
+    const double coarse = *front_at_thickness(deposit(wedge_profile, wedge_length, 0.2), 0.2, t);
+    EXPECT_NEAR(*front_at_thickness(deposit(wedge_profile, wedge_length, 0.1), 0.1, t), coarse, 0.1 * 0.1) << t;
     const double coarse_parabola = *front_at_thickness(deposit(parabola, 12.0, 0.2), 0.2, t);
     EXPECT_NEAR(*front_at_thickness(deposit(parabola, 12.0, 0.1), 0.1, t), coarse_parabola, 0.1 * 0.1) << t;
   }
@@ -77,15 +77,16 @@ TEST(FrontAtThickness, HardlyMovesWhenTheSpacingIsHalved) {
 
 TEST(FrontAtThickness, HardlyMovesWithTheParticles) {
   // Independent displacements of variance e^2 change T by the standard deviation sqrt(T A e^2 integral w'^2 ds), where
-  // A = dx^2 and the integral is 15/(7 R^3), and the front by that over the slope of the wedge_height.
+  // A = dx^2 and the integral is 15/(7 R^3), and the front by that over the slope of the wedge_profile.
   const double dx = 0.2, t = 0.5, jitter = 0.1, radius = spread * dx;
   const double expected = std::sqrt(t * dx * dx * std::pow(jitter * dx, 2) / 3.0 * 15.0 / (7.0 * std::pow(radius, 3))) /
-                          (wedge_height / wedge_length);
-  const double still = *front_at_thickness(deposit(wedge_height, wedge_length, dx), dx, t);
+                          (wedge_profile / wedge_length);
+  const double still = *front_at_thickness(deposit(wedge_profile, wedge_length, dx), dx, t);
   double sum = 0.0, most = 0.0;
   constexpr unsigned draws = 200;
   for (unsigned seed = 0; seed < draws; ++seed) {
-    const double moved = *front_at_thickness(deposit(wedge_height, wedge_length, dx, 0.0, jitter, seed), dx, t) - still;
+    const double moved =
+        *front_at_thickness(deposit(wedge_profile, wedge_length, dx, 0.0, jitter, seed), dx, t) - still;
     sum += moved * moved;
     most = std::max(most, std::abs(moved));
   }
@@ -96,12 +97,12 @@ TEST(FrontAtThickness, HardlyMovesWithTheParticles) {
 
 TEST(FrontAtThickness, MovesContinuously) {  // whatever of the lattice the front falls on
   const double dx = 0.2;
-  double before = *front_at_thickness(deposit(wedge_height, wedge_length, dx), dx, 0.5);
+  double before = *front_at_thickness(deposit(wedge_profile, wedge_length, dx), dx, 0.5);
   for (int k = 1; k <= 40; ++k) {  // 0.01 m of height at the tip a step: 0.04 m of front, a fifth of a spacing
     const double more = 0.01 * k;
-    const auto raised = [&](double s) { return wedge_height(s) + (s < 0.0 ? 0.0 : more); };
+    const auto raised = [&](double s) { return wedge_profile(s) + (s < 0.0 ? 0.0 : more); };
     const double now = *front_at_thickness(deposit(raised, wedge_length, dx), dx, 0.5);
-    EXPECT_NEAR(now - before, 0.01 * wedge_length / wedge_height, 0.05 * dx) << k;
+    EXPECT_NEAR(now - before, 0.01 * wedge_length / wedge_profile, 0.05 * dx) << k;
     before = now;
   }
 }
