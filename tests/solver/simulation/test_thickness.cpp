@@ -10,11 +10,11 @@
 namespace talus {
 namespace {
 
-constexpr double spread = 3.0;                            ///< half width of the weight in spacings
-constexpr double variance = spread * spread / 7.0;        ///< of the weight, in spacings squared: integral of d^2 w(d)
-constexpr double wedge_profile = 4.0, wedge_length = 16;  ///< [m]
+constexpr double spread = 3.0;                           ///< half width of the weight in spacings
+constexpr double variance = spread * spread / 7.0;       ///< of the weight, in spacings squared: integral of d^2 w(d)
+constexpr double wedge_height = 4.0, wedge_length = 16;  ///< [m]
 
-double wedge_profile(double s) { return s < 0.0 ? 0.0 : std::max(0.0, wedge_profile * (1.0 - s / wedge_length)); }
+double wedge_profile(double s) { return s < 0.0 ? 0.0 : std::max(0.0, wedge_height * (1.0 - s / wedge_length)); }
 double parabola(double s) { return s < 0.0 ? 0.0 : std::max(0.0, 3.0 * (1.0 - s * s / 144.0)); }
 
 /// Soil of height h(s) on the square cells of a lattice: cells of a column are cut at the surface, which makes their
@@ -80,7 +80,7 @@ TEST(FrontAtThickness, HardlyMovesWithTheParticles) {
   // A = dx^2 and the integral is 15/(7 R^3), and the front by that over the slope of the wedge_profile.
   const double dx = 0.2, t = 0.5, jitter = 0.1, radius = spread * dx;
   const double expected = std::sqrt(t * dx * dx * std::pow(jitter * dx, 2) / 3.0 * 15.0 / (7.0 * std::pow(radius, 3))) /
-                          (wedge_profile / wedge_length);
+                          (wedge_height / wedge_length);
   const double still = *front_at_thickness(deposit(wedge_profile, wedge_length, dx), dx, t);
   double sum = 0.0, most = 0.0;
   constexpr unsigned draws = 200;
@@ -102,7 +102,7 @@ TEST(FrontAtThickness, MovesContinuously) {  // whatever of the lattice the fron
     const double more = 0.01 * k;
     const auto raised = [&](double s) { return wedge_profile(s) + (s < 0.0 ? 0.0 : more); };
     const double now = *front_at_thickness(deposit(raised, wedge_length, dx), dx, 0.5);
-    EXPECT_NEAR(now - before, 0.01 * wedge_length / wedge_profile, 0.05 * dx) << k;
+    EXPECT_NEAR(now - before, 0.01 * wedge_length / wedge_height, 0.05 * dx) << k;
     before = now;
   }
 }
