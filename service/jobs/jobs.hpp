@@ -70,7 +70,7 @@ class Jobs {
                         std::int64_t seed);
   TemporaryDirectory scratch_directory() const;
   void repair(const Job& job);
-  /// The plan of a job for its present number of realizations, and its tables and study.json written anew.
+  /// The plan of a job for its present number of realizations, and its tables and study.json, written again.
   Plan plan_of(const Job& job);
   void publish_again(const Job& job);
 

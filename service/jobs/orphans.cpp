@@ -91,7 +91,7 @@ Adoption adopt(const DataDirectory& data, Store& store, const Found& found) {
     if (const std::optional<Job> known = store.job(found.record.job.id)) {
       adoption.message = give_back(data, *known, found.directory);
       adoption.adopted = adoption.message.empty();
-      if (adoption.adopted) adoption.message = "directory given back to its job";
+      if (adoption.adopted) adoption.message = "directory returned to its job";
     } else {
       adoption.message = record_again(data, store, found);
       adoption.adopted = true;

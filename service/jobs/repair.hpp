@@ -13,7 +13,7 @@ namespace talus::service {
 std::filesystem::path checked_case(const DataDirectory& data, const Job& job);
 
 /// Replaces plan.json and the marker of a job's directory by those of `made`, a study prepared from the case of the
-/// job, where they are damaged or missing; and writes job.json anew where that is so.
+/// job, where they are damaged or missing; and writes job.json again where that is so.
 /// @throws IoError where `made` is of another case than the job
 void repair_directory(const DataDirectory& data, const Job& job, const std::filesystem::path& made);
 

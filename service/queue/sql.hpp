@@ -167,7 +167,7 @@ inline constexpr const char* no_open_runs =
     "NOT EXISTS (SELECT 1 FROM runs WHERE job = number AND state = 'leased')";
 
 /// The counts of a job from its runs.
-inline constexpr const char* counted_anew =
+inline constexpr const char* recounted =
     "done = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done'), "
     "sound = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done' AND verdict = 'sound'), "
     "doubtful = (SELECT COUNT(*) FROM runs WHERE job = ?1 AND kind = 0 AND state = 'done' AND verdict = 'doubtful'), "

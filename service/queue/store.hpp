@@ -60,7 +60,7 @@ class Store final : public talus::Store {
   bool finish(std::int64_t job, JobState state, const std::string& message);
   /// Dismisses a job in any state and deletes its runs, so no claim on them is current any more.
   void dismiss(std::int64_t job);
-  /// At start: queues runs again whose record does not agree with its checksum, and counts the runs of jobs anew whose
+  /// At start: queues runs again whose record does not agree with its checksum, and recounts the runs of jobs whose
   /// counts are wrong. Reads every run once. @return what was damaged
   std::vector<std::string> repair_rows();
   /// Makes what submission fixed of a job that of `right`. @return false where it is

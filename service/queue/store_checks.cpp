@@ -78,7 +78,7 @@ std::vector<std::string> Store::repair_rows() {
       } else {
         found.push_back("job " + job.id + ": its counts");
       }
-      change_job(db, job.number, clock_(), counted_anew, "TRUE");
+      change_job(db, job.number, clock_(), recounted, "TRUE");
     }
   });
   return found;

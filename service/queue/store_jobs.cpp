@@ -181,7 +181,7 @@ void Store::requeue_lost(std::int64_t job, std::span<const RunKey> lost) {
               "UPDATE runs SET state = 'queued', crashes = 0 "
               "WHERE job = ? AND level = ? AND kind = ? AND idx = ? AND state = 'done'",
               job, key);
-    change_job(db, job, clock_(), std::string(reopened) + ", " + counted_anew, "state != 'dismissed'");
+    change_job(db, job, clock_(), std::string(reopened) + ", " + recounted, "state != 'dismissed'");
   });
 }
 

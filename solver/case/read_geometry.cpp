@@ -170,7 +170,7 @@ void read_run_out(ObjectReader& in, Terrain& t, const SlideInput& slide, double 
        "user", "0.1 m or 1.5 particle spacings, whichever is more"});
 }
 
-/// The top of an end wall that has one of its own.
+/// The top of an end wall, where it is stated for that end.
 void read_own_top(ObjectReader& in, std::string_view key, const char* side, bool stands, std::optional<double>& top) {
   in.optional_number(
       key, top, coordinate,

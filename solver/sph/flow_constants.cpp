@@ -5,8 +5,8 @@
 namespace talus {
 namespace {
 
-/// Shear modulus over rho0 c_s^2, which is the bulk modulus of the equation of state: a Poisson number of 0.36. Fronts
-/// come out too far in proportion to 1/G, since soil at its yield stress is strained by tau_y/G first.
+/// Shear modulus over rho0 c_s^2, which is the bulk modulus of the equation of state: a Poisson's ratio of 0.36. Fronts
+/// come out too far in proportion to 1/G: before it yields, soil is strained by tau_y/G.
 constexpr double default_shear_share = 0.3;
 
 }  // namespace

@@ -122,7 +122,7 @@ struct WallStress {
 
 /// Shepard interpolation of the soil's stress to a wall particle, pressure with the hydrostatic term of Adami 2012:
 /// p_w = sum_f (p_f + rho_f g.r_wf) W / sum_f W; the deviator as sum_f t_f W / sum_f W, enlarged by deviator_growth;
-/// cohesion and friction without more.
+/// cohesion and friction as plain averages.
 template <class Real>
 struct WallStressSum {
   Real weight, p, p_soil, q, c, tan_phi;
@@ -170,11 +170,10 @@ struct WallStressSum {
     const Real share = inverse * select(smooth, Real(1.0), growth);
     Symmetric<Real> s{fms(t.xx, share, p_wall), fms(t.yy, share, p_wall), t.xy * share};
     if (any(smooth)) s = select(smooth, mirrored(s, normal), s);
-    const auto weaker = of_wall.tan_phi < soil.tan_phi;
-    if (any(weaker)) {
-      const MohrCoulomb<Real> both{min(soil.c, of_wall.c), of_wall.tan_phi};
-      s = select(weaker, with_bounded_shear(s, normal, yield(both, p_wall)), s);
-    }
+    const MohrCoulomb<Real> both{min(soil.c, of_wall.c), min(soil.tan_phi, of_wall.tan_phi)};
+    const Real limit = yield(both, p_wall);
+    const auto weaker = limit < yield(soil, p_wall);
+    if (any(weaker)) s = select(weaker, with_bounded_shear(s, normal, limit), s);
     return {s, p_wall, select_or_zero(covered, fma(q, inverse, Real(1.0)))};
   }
 };

@@ -132,7 +132,7 @@ class Keeping(Kept):
         self.forget_queue()
         for file in away.iterdir():
             file.rename(self.daemon.data / file.name)
-        self.assertIn(f"adopted {job}: directory given back", talusd("--data", self.daemon.data, "--adopt"))
+        self.assertIn(f"adopted {job}: directory returned", talusd("--data", self.daemon.data, "--adopt"))
         self.start()
         self.assertEqual(self.results(job), summary)
         self.assertEqual(self.daemon.get(f"/jobs/{job}/realizations/0/field").status, 200)

@@ -86,6 +86,9 @@ TEST(Wall, ShearAtTheWallIsTheYieldStressOfTheSoilThere) {
   EXPECT_NEAR(wall.s.xy, c + wall.p * tan_phi, 1e-9);
   const WallStress<double> smoother = sum.value(constants(0.1, {0, -9.81}, {}), {0, 1}, {300, 0.1}, false);
   EXPECT_NEAR(smoother.s.xy, 300 + wall.p * 0.1, 1e-9);
+  // Of two strengths each may be the weaker one.
+  const WallStress<double> less_cohesive = sum.value(constants(0.1, {0, -9.81}, {}), {0, 1}, {300, 0.9}, false);
+  EXPECT_NEAR(less_cohesive.s.xy, 300 + wall.p * tan_phi, 1e-9);
 }
 
 /// Soil sliding along a flat wall at 3 m/s under pressure; returns it evaluated.
