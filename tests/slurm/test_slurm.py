@@ -22,13 +22,14 @@ OVER = ("successful", "failed")
 
 
 def published(directory):
-    """What a study says of itself, without what time it took."""
+    """What a study says of itself, without what time it took and the checksums that cover that time."""
     study = json.loads((directory / "study.json").read_text())
     study["effort"].pop("wall_clock_s")
+    study.pop("checksum")
     tables = []
     for name in ("realizations.csv", "noise_floor.csv"):
         with open(directory / name, newline="") as file:
-            tables.append([{k: v for k, v in row.items() if k != "wall_clock_s"} for row in csv.DictReader(file)])
+            tables.append([{k: v for k, v in row.items() if k not in ("wall_clock_s", "checksum")} for row in csv.DictReader(file)])
     return study, tables
 
 
