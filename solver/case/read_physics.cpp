@@ -169,8 +169,8 @@ void read_numerics(ObjectReader& in, Numerics& n) {
             {"Artificial viscosity, quadratic term.", "Monaghan 1992"});
   in.choice(
       "artificial_viscosity_jump", n.velocity_jump, jumps,
-      {"What the artificial viscosity acts on: reconstructed: what of the approach of two particles their velocity "
-       "gradients do not explain, so that smooth shear is left alone; whole: all of it.",
+      {"What the artificial viscosity acts on: reconstructed: what of the relative velocity of two particles their "
+       "velocity gradients do not explain, so that smooth shear is left alone; whole: all of it, where they approach.",
        "Frontiere et al. 2017; Monaghan 1992 for whole"});
   in.choice("continuity", n.continuity, continuities,
             {"volume: density rate rho_i sum V_j, exact across jumps of density; mass: sum m_j as printed.",

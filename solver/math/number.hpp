@@ -6,6 +6,7 @@
 
 namespace talus {
 
+using std::abs;
 using std::sqrt;
 
 /// a b + c; in double precision rounded twice, so that results do not depend on the processor.

@@ -15,8 +15,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
-/// Pi_ij = (-alpha c_s mu + beta mu^2)/rho_mean, mu = h v_ij.r_ij/(r^2 + 0.01 h^2), for approaching pairs only.
-/// Monaghan 1992, cited by [Z20] Eq. 2. Here as rho_i rho_j Pi_ij, which the momentum equation needs.
+/// Pi_ij = -mu (alpha c_s + beta |mu|)/rho_mean, mu = h J/(r^2 + 0.01 h^2), of the jump J of the velocity along r_ij.
+/// Monaghan 1992, cited by [Z20] Eq. 2, whose J is v_ij.r_ij of approaching pairs and 0 of others. Here as rho_i rho_j
+/// Pi_ij, which the momentum equation needs.
 /// `Quadratic`: beta is not zero.
 template <class Real, bool Quadratic>
 struct ArtificialViscosity {
@@ -37,25 +38,29 @@ struct ArtificialViscosity {
     return Quadratic ? h_rho : h_rho * alpha_c;
   }
 
-  /// rho_i rho_j Pi_ij = (rho_i rho_j/rho_mean) mu (beta mu - alpha c_s)
-  /// @param approach  v_ij.r_ij of an approaching pair or what reconstruction leaves of it, <= 0
-  HWY_INLINE Real operator()(Real of_i, Real rho_i, Real rho_j, Real approach, Real r2) const {
+  /// rho_i rho_j Pi_ij = -(rho_i rho_j/rho_mean) mu (alpha c_s + beta |mu|)
+  HWY_INLINE Real operator()(Real of_i, Real rho_i, Real rho_j, Real jump, Real r2) const {
     const Real soft_r2 = r2 + soft;
-    const Real linear = of_i * approach * (rho_j / ((rho_i + rho_j) * soft_r2));
+    const Real linear = of_i * jump * (rho_j / ((rho_i + rho_j) * soft_r2));
     if constexpr (!Quadratic) return linear;
-    return linear * fma(beta, h * approach / soft_r2, alpha_c);
+    return linear * fnma(beta, h * abs(jump) / soft_r2, alpha_c);
   }
 };
 
 /// What the artificial viscosity of two soil particles acts on, if their velocities are reconstructed: of v_ij.r_ij
-/// that part which their strain rates do not explain, v_ij.r_ij - r_ij.(e_i + e_j)/2.r_ij (after Frontiere et al.
-/// 2017). Monaghan's term acts on the whole v_ij.r_ij, so that it resists smooth shear as a viscosity of about rho
-/// alpha c_s h/8 would, which falls with the spacing and decides how far a slide runs. Bounded by the whole and zero:
-/// it never takes more than Monaghan's term and never feeds energy.
-/// @param smooth  r_ij.(e_i + e_j)/2.r_ij
+/// that part which their strain rates do not explain, J = v_ij.r_ij - S with S = r_ij.(e_i + e_j)/2.r_ij (after
+/// Frontiere et al. 2017), times (J/(|J| + |S|))^2. Monaghan's term acts on the whole v_ij.r_ij, so that it resists
+/// smooth shear as a viscosity of about rho alpha c_s h/8 would, which falls with the spacing and decides how far a
+/// slide runs. In smooth shear J is the error of the strain rates, a small part of S, and the square removes it; where
+/// particles shake, S is small and J acts whole. Both signs count: damping of approaching pairs alone is a pressure,
+/// which lifts a sheared layer and drives its toe outwards. Bounded by v_ij.r_ij and zero: it never takes more than
+/// Monaghan's term with both signs would and never feeds energy.
+/// @param smooth  S
 template <class Real>
-HWY_INLINE Real unexplained_approach(Real v_dot_r, Real smooth) {
-  return min(max(v_dot_r - smooth, v_dot_r), Real(0.0));
+HWY_INLINE Real unexplained_jump(Real v_dot_r, Real smooth) {
+  const Real zero(0.0), least(1e-30);
+  const Real left = v_dot_r - smooth, share = left / (abs(left) + abs(smooth) + least);
+  return min(max(left * (share * share), min(v_dot_r, zero)), max(v_dot_r, zero));
 }
 
 /// The part of r_ij across the wall. With reconstruction the artificial viscosity between soil and wall acts on the

@@ -95,10 +95,10 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
       const float* HWY_RESTRICT density = f.soil.density.data() + 4 * pair.j;
       const Lanes VF = Lanes(density[0]) * pair.kernel;
       const Lanes v_dot_r = dot(v - Vector<Lanes>{Lanes(motion[2]), Lanes(motion[3])}, pair.r);
-      Lanes approach = min(v_dot_r, Lanes(0.0));
+      Lanes jump = min(v_dot_r, Lanes(0.0));
       if constexpr (Reconstruct)
-        approach = unexplained_approach(v_dot_r, dot((half_e + tensor_of(f.soil.strain, pair.j)) * pair.r, pair.r));
-      const Lanes Pi = viscosity(viscosity_of_i, rho, Lanes(density[2]), approach, pair.r2);
+        jump = unexplained_jump(v_dot_r, dot((half_e + tensor_of(f.soil.strain, pair.j)) * pair.r, pair.r));
+      const Lanes Pi = viscosity(viscosity_of_i, rho, Lanes(density[2]), jump, pair.r2);
       sum = add_force(sum, s, tensor_of(f.soil.stress, pair.j), Pi, VF, pair.r);
       if constexpr (Measure) powers.add_soil(Pi, VF, v_dot_r);
     };

@@ -166,9 +166,9 @@ struct Passes {
     auto pair_powers = PairPowers<double>::zero();
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double v_dot_r = dot(v_i - vector(soil.velocity(j)), r);
-      const double approach =
-          reconstruct ? unexplained_approach(v_dot_r, 0.5 * dot((e_i + strain[j]) * r, r)) : std::min(v_dot_r, 0.0);
-      const double Pi = viscosity(viscosity_of_i, rho_i, density(j), approach, r2);
+      const double jump =
+          reconstruct ? unexplained_jump(v_dot_r, 0.5 * dot((e_i + strain[j]) * r, r)) : std::min(v_dot_r, 0.0);
+      const double Pi = viscosity(viscosity_of_i, rho_i, density(j), jump, r2);
       const double VF = volume(j) * minus_F(r2);
       sum = add_force(sum, s_i, stress(j), Pi, VF, r);
       if (powers) pair_powers.add_soil(Pi, VF, v_dot_r);

@@ -194,18 +194,22 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
     r.ay[i] = k.g.y;
     const bool reconstruct = k.numerics.velocity_jump == VelocityJump::reconstructed;
     const auto viscous = [&](double vr, double x, double y, double rho) {
-      if (vr >= 0) return 0.0;
       const double mu = k.h * vr / (x * x + y * y + 0.01 * k.h * k.h);
-      return (-k.numerics.alpha * k.c_s * mu + k.numerics.beta * mu * mu) / rho;
+      return -mu * (k.numerics.alpha * k.c_s + k.numerics.beta * std::abs(mu)) / rho;
     };
     for (std::size_t j = 0; j < n; ++j) {
       if (i == j) continue;
       const double x = s.x[i] - s.x[j], y = s.y[i] - s.y[j], d = std::hypot(x, y), gx = dW(d) * x / d,
                    gy = dW(d) * y / d;
       double vr = (s.vx[i] - s.vx[j]) * x + (s.vy[i] - s.vy[j]) * y;
-      if (reconstruct && vr < 0)
-        vr = std::max(
-            vr, vr - ((e_xx[i] + e_xx[j]) * x * x + (e_yy[i] + e_yy[j]) * y * y) / 2 - (e_xy[i] + e_xy[j]) * x * y);
+      if (reconstruct) {
+        const double smooth =
+            ((e_xx[i] + e_xx[j]) * x * x + (e_yy[i] + e_yy[j]) * y * y) / 2 + (e_xy[i] + e_xy[j]) * x * y;
+        const double left = vr - smooth, size = std::abs(left);
+        vr = std::clamp(left * std::pow(size / (size + std::abs(smooth)), 2), std::min(vr, 0.0), std::max(vr, 0.0));
+      } else {
+        vr = std::min(vr, 0.0);
+      }
       const double Pi = viscous(vr, x, y, (s.rho[i] + s.rho[j]) / 2), rr = s.rho[i] * s.rho[j];
       r.ax[i] += s.m[j] * (((r.sxx[i] + r.sxx[j]) / rr - Pi) * gx + (r.sxy[i] + r.sxy[j]) / rr * gy);
       r.ay[i] += s.m[j] * ((r.sxy[i] + r.sxy[j]) / rr * gx + ((r.syy[i] + r.syy[j]) / rr - Pi) * gy);
@@ -221,7 +225,8 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
         arm_x = height * w.nx[j];
         arm_y = height * w.ny[j];
       }
-      const double Pi = viscous(pair.vx * arm_x + pair.vy * arm_y, x, y, rho), viscosity = rho * rho * Pi * dW(d) / d;
+      const double Pi = viscous(std::min(pair.vx * arm_x + pair.vy * arm_y, 0.0), x, y, rho),
+                   viscosity = rho * rho * Pi * dW(d) / d;
       r.ax[i] += V * ((r.sxx[i] + r.wall_sxx[j]) * gx + (r.sxy[i] + r.wall_sxy[j]) * gy - viscosity * arm_x);
       r.ay[i] += V * ((r.sxy[i] + r.wall_sxy[j]) * gx + (r.syy[i] + r.wall_syy[j]) * gy - viscosity * arm_y);
     }
