@@ -142,10 +142,10 @@ class Run(Directory):
         self.assertEqual(self.result["lower_bounds"], bounds)  # 16 % of the soil left
 
     def test_a_front_that_ends_on_the_terrain_is_no_lower_bound(self):
-        quality, lines = self.verdict("particle_spacing_m=0.8", "terrain.bed_m.2.0=32.8")
+        quality, lines = self.verdict("particle_spacing_m=0.8", "terrain.bed_m.2.0=32")
         self.assertEqual([reason["check"] for reason in quality["reasons"]][0], "left_terrain")
         result = self.result
-        self.assertLess(result["front_mass_99_m"], 32.8)
+        self.assertLess(result["front_mass_99_m"], 32)
         self.assertLess(result["left_domain"], 0.01 * result["particles"]["soil"])
         self.assertIn("influence_zone_m", result["lower_bounds"])
         self.assertIn("centre_of_mass_x_m", result["lower_bounds"])
@@ -247,7 +247,7 @@ class Study(Directory):
         return done, summary, table(self.dir / "s/realizations.csv")
 
     def test_runs_that_end_too_early(self):
-        done, summary, rows = self.study("time.end_s=0.8")
+        done, summary, rows = self.study("time.end_s=0.7")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout.splitlines()[0], "4 of 4 runs doubtful: still moving (4)")
         self.assertEqual(summary["quality"]["doubtful"], 4)
@@ -258,12 +258,12 @@ class Study(Directory):
         self.assertEqual((self.dir / "s/study.json").read_text(), before)
 
     def test_the_study_whose_steps_were_too_long(self):
-        """Stable, its mean and standard deviation are 16.0 m and 2.4 m."""
+        """The spread is that of the soil, not of the steps."""
         done, summary, rows = self.study("numerics.cfl=0.4", realizations=20)
         self.assertEqual((done.returncode, summary["quality"]["invalid"]), (0, 0), done.stderr)
         front = summary["quantities"]["influence_zone_m"]
-        self.assertAlmostEqual(front["mean"], 16.04, delta=0.1)
-        self.assertAlmostEqual(front["stdev"], 2.40, delta=0.1)
+        self.assertAlmostEqual(front["mean"], 15.61, delta=0.1)
+        self.assertAlmostEqual(front["stdev"], 2.47, delta=0.1)
         self.assertIn("front still moving", done.stdout.splitlines()[0])
 
     def test_steps_that_are_too_long_are_seen_in_the_runs(self):
