@@ -247,7 +247,7 @@ class Study(Directory):
         return done, summary, table(self.dir / "s/realizations.csv")
 
     def test_runs_that_end_too_early(self):
-        done, summary, rows = self.study("time.end_s=0.7")
+        done, summary, rows = self.study("time.end_s=0.3")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout.splitlines()[0], "4 of 4 runs doubtful: still moving (4)")
         self.assertEqual(summary["quality"]["doubtful"], 4)
