@@ -1,6 +1,7 @@
 #include "study/record.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "support/files.hpp"
@@ -79,6 +80,7 @@ std::optional<Record> read_result(const fs::path& file, const RunKey& key, const
         value = std::numeric_limits<std::remove_reference_t<decltype(value)>>::quiet_NaN();
       else
         place.at(name).get_to(value);
+      if (std::abs(static_cast<double>(value)) > largest_number) throw IoError("a number that no run has");
     });
     json.at("digest").get_to(record.digest);
     for (const Json& measure : json.value("lower_bounds", Json::array()))

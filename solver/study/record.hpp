@@ -79,6 +79,11 @@ void visit_numbers(AnyRecord& record, const Use& use) {
     std::visit([&](auto member) { use(of.key, of.object, record.*member); }, of.member);
 }
 
+/// No number of a run is larger: metres, seconds, steps and degrees stay far below. A larger one is damage.
+inline constexpr double largest_number = 1e12;
+/// More realizations than a study can have.
+inline constexpr std::int64_t end_of_indices = 1'000'000'000;
+
 /// Why a run failed.
 struct Failure {
   std::string reason;  ///< one line
