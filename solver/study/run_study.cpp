@@ -168,6 +168,8 @@ void StudyRunner::run_all(Engine& engine) {
 StudyEnd StudyRunner::run() {
   wait_for_earlier_workers();
   if (options_.retry_failed) store_.forget_failures();
+  for (const std::int64_t index : store_.forget_damaged_profiles())
+    note("the kept profile of realization " + std::to_string(index) + " is damaged; running it again");
   Engine engine(store_, std::move(executor_), engine_options());
   engine.estimator(0);  // makes the directories, and applies what the records decide
   try {

@@ -50,7 +50,8 @@ void read_as_table(const MemoryFile& file) {
   const std::vector<Record> records = read_csv(file.path(), "index");
   for (const Record& record : records) check_record(record);
   const StudySummary summary = summary_of(plan(), records, records);
-  for (const auto& [key, quantity] : summary.json().at("quantities").items()) {
+  const Json study = summary.json();
+  for (const auto& [key, quantity] : study.at("quantities").items()) {
     check(quantity.at("histogram").at("counts").size() <= 1002);
     check(quantity.at("exceedance").size() <= 1003);
   }

@@ -307,3 +307,39 @@ TEST(RunStudy, ADamagedResultIsRunAgain) {
   EXPECT_EQ(s.count("begin 2 "), 2);
   EXPECT_EQ(s.count("begin "), 5);
 }
+
+TEST(RunStudy, ADamagedProfileIsMadeAgain) {
+  Study s(6);
+  s.run();
+  const std::string farthest = json::parse(content(s.out / "profiles" / "worst.json"))["realization"].dump();
+  ASSERT_NE(farthest, "0");
+  for (const auto& [profile, index] : {std::pair{"first", std::string("0")}, {"worst", farthest}}) {
+    const fs::path snapshots = s.out / "profiles" / (std::string(profile) + ".vtkhdf");
+    const std::string whole = content(snapshots), results = content(s.out / "realizations.csv");
+    for (const bool missing : {false, true}) {
+      const int before = s.count("begin ");
+      fs::remove(snapshots);
+      if (!missing) write(snapshots, "other than it was");
+      EXPECT_TRUE(is_damaged_profile({s.out}, profile));
+      EXPECT_EQ(s.run(), StudyEnd::finished);
+      EXPECT_EQ(content(snapshots), whole);
+      EXPECT_EQ(content(s.out / "realizations.csv"), results);
+      EXPECT_EQ(s.count("begin "), before + 1);
+      EXPECT_FALSE(is_damaged_profile({s.out}, profile));
+    }
+    EXPECT_EQ(s.count("begin " + index + " "), 3);
+  }
+  EXPECT_NE(s.text_of_notes().find("the kept profile of realization 0 is damaged; running it again"),
+            std::string::npos);
+}
+
+TEST(RunStudy, AProfileOfAnEarlierVersionIsLeftAlone) {  // without a hash
+  Study s(3);
+  s.run();
+  fs::remove(s.out / "profiles" / "first.json");
+  write(s.out / "profiles" / "worst.json", with_checksum({{"realization", 1}, {"influence_zone_m", 35.2}}));
+  write(s.out / "profiles" / "first.vtkhdf", "other");
+  const int before = s.count("begin ");
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_EQ(s.count("begin "), before);
+}
