@@ -8,6 +8,7 @@
 #include <exception>
 #include <iostream>
 #include <thread>
+#include <vector>
 
 #include "base/json.hpp"
 #include "http/server.hpp"
@@ -51,6 +52,7 @@ FileDescriptor wait_for_lock(const std::filesystem::path& path, bool inherited, 
   const auto end = std::chrono::steady_clock::now() + patience;
   for (;;) {
     TriedLock lock = try_lock(path, inherited);
+    if (!lock.supported && std::filesystem::is_directory(path)) return FileDescriptor();  // NFS locks only files
     if (!lock.supported) throw IoError(path.string() + ": the file system has no locks; choose another --data");
     if (lock.file) return std::move(lock.file);
     if (std::chrono::steady_clock::now() > end) throw IoError(otherwise);
@@ -65,15 +67,18 @@ class ClaimedData {
   explicit ClaimedData(const DataDirectory& data) {
     for (const auto& directory : {data.root, data.jobs(), data.scratch()})
       std::filesystem::create_directories(directory);
-    lock_ = wait_for_lock(data.lock(), false, std::chrono::seconds(1), "another talusd is using " + data.root.string());
+    // The directory, too: its lock holds where somebody has removed the file.
+    for (const auto& path : {data.root, data.lock()})
+      locks_.push_back(
+          wait_for_lock(path, false, std::chrono::seconds(1), "another talusd is using " + data.root.string()));
     // The workers of a killed talusd end a moment after it; until then they may still write into the data directory.
-    workers_lock_ =
+    locks_.push_back(
         wait_for_lock(data.workers_lock(), true, std::chrono::seconds(10),
-                      "workers of an earlier talusd still run in " + data.root.string() + "; stop them first");
+                      "workers of an earlier talusd still run in " + data.root.string() + "; stop them first"));
   }
 
  private:
-  FileDescriptor lock_, workers_lock_;
+  std::vector<FileDescriptor> locks_;
 };
 
 std::unique_ptr<talus::service::Store> open_store(const Config& config) {

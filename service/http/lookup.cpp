@@ -175,7 +175,11 @@ Json status_info(const Job& job, const Exchange& exchange) {
                {"updated", utc_text(job.updated)},
                {"progress", progress(job)}};
   if (job.started) info["started"] = utc_text(*job.started);
-  if (!ended(job.state) && !job.message.empty()) info["waits"] = job.message;
+  if (!ended(job.state)) {
+    const std::string trouble = exchange.service.scheduler.trouble();  // cannot be recorded on a full disk
+    if (!trouble.empty()) info["message"] = trouble;
+    if (!trouble.empty() || !job.message.empty()) info["waits"] = trouble.empty() ? job.message : trouble;
+  }
   if (job.finished) info["finished"] = utc_text(*job.finished);
   if (job.planned > 0) {
     info["title"] = job.title;

@@ -12,6 +12,7 @@ Answer healthy(Exchange&) { return json_answer({{"status", "ok"}}); }
 Answer ready(Exchange& exchange) {
   const Service& service = exchange.service;
   service.store.open_jobs({});  // throws when the queue cannot be read
+  service.jobs.check_data();
   if (service.stopping()) throw Refusal(reason::unavailable, "talusd is stopping");
   if (disk_left(service.config.data) < service.config.quotas.disk_bytes)
     throw Refusal(reason::unavailable, "the disk has less free space than --min-disk requires");

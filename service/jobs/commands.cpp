@@ -8,8 +8,9 @@ namespace talus::service {
 namespace {
 
 constexpr std::uint64_t short_command_memory = std::uint64_t{4} << 30;
-constexpr double reserve = 6.0;          ///< address space of a run's data, as a multiple of the memory that it takes
-constexpr double reserved_always = 2e9;  ///< address space of the program, its libraries and thread stacks [bytes]
+constexpr double reserve = 6.0;  ///< address space of a run's data, as a multiple of the memory that it takes
+constexpr std::uint64_t stall_seconds = 60;  ///< a run that uses no CPU time for so long hangs
+constexpr double reserved_always = 2e9;      ///< address space of the program, its libraries and thread stacks [bytes]
 
 /// The whole environment of a command. The variables of talusd that are passed on affect only how it computes or
 /// reports.
@@ -28,6 +29,7 @@ executor::Limits run_limits(const Config& config, double particles) {
           .cpu_seconds = seconds * static_cast<std::uint64_t>(config.threads) + 60,
           .file_bytes = config.file_bytes,
           .wall_seconds = seconds,
+          .stall_seconds = stall_seconds,
           .core_dumps = false};
 }
 

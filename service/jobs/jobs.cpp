@@ -172,6 +172,7 @@ std::size_t Jobs::field_terms(const Json& document) {
 }
 
 void Jobs::check_queue(const std::string& subject) const {
+  data_watch_.check();
   const auto check = [](std::int64_t open, std::int64_t most, const char* whose) {
     if (open >= most)
       throw Refusal(reason::queue_full,
@@ -210,6 +211,7 @@ void Jobs::check_size(double particles, double steps, std::int64_t realizations,
 
 std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response, Milliseconds created) {
   std::optional<Job> recorded = store_.create(job, response, created);
+  data_watch_.check();  // a 201 means that the job is on the disk
   if (recorded) scheduler_.wake();
   return recorded;
 }

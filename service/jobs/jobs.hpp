@@ -6,6 +6,7 @@
 #include <semaphore>
 
 #include "jobs/commands.hpp"
+#include "jobs/data_watch.hpp"
 #include "jobs/inputs.hpp"
 #include "jobs/result_cache.hpp"
 #include "jobs/scheduler.hpp"
@@ -18,8 +19,15 @@ namespace talus::service {
 class Jobs {
  public:
   Jobs(const Config& config, Store& store, Scheduler& scheduler)
-      : config_(config), data_{config.data}, store_(store), scheduler_(scheduler), running_runs_(config.workers) {}
+      : config_(config),
+        data_{config.data},
+        data_watch_(data_),
+        store_(store),
+        scheduler_(scheduler),
+        running_runs_(config.workers) {}
 
+  /// @throws Refusal unavailable where the data directory has been removed or replaced
+  void check_data() const { data_watch_.check(); }
   /// Checks a study with `talus validate` and against the quotas, makes its directory and records it.
   /// @param response  stored under the Idempotency-Key of the request
   /// @return the job; nothing where another request has used the key meanwhile
@@ -76,6 +84,7 @@ class Jobs {
 
   const Config& config_;
   DataDirectory data_;
+  DataWatch data_watch_;
   Store& store_;
   Scheduler& scheduler_;
   std::counting_semaphore<64> running_commands_{4};  ///< at a time

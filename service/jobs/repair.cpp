@@ -102,9 +102,22 @@ std::vector<RunKey> lost_results(const DataDirectory& data, const Job& job, Stor
   const StudyPaths paths{data.job(job.id)};
   const StudyIdentity identity{.seed = static_cast<std::uint64_t>(job.seed), .case_hash = job.case_hash};
   std::vector<RunKey> lost;
+  std::optional<std::int64_t> farthest;
+  double zone = 0.0;  // of the farthest [m]
   visit_done(job, store, [&](const RunKey& key, const Record& record) {
     if (!is_result_of(paths.result(key), key, identity, record)) lost.push_back(key);
+    if (!key.is_replicate() && (!farthest || record.measures.influence_zone > zone)) {
+      farthest = key.index;
+      zone = record.measures.influence_zone;
+    }
   });
+  for (const std::int64_t index : damaged_profiles(paths, farthest)) {
+    const RunKey key{.index = index};
+    if (std::ranges::find(lost, key) != lost.end()) continue;
+    log_error("damaged", {{"job", job.id}, {"why", "the kept profile of " + run_name(key)}});
+    fs::remove(paths.result(key));  // or it would be taken instead of running it again
+    lost.push_back(key);
+  }
   return lost;
 }
 

@@ -108,19 +108,33 @@ void Scheduler::loop() {
   while (!draining_) {
     try {
       tick();
-      if (in_trouble_) log_info("scheduler_continues");
-      in_trouble_ = false;
+      set_trouble("");
       wait_for(engine_.running() > 0 || echo_waiting_ ? poll_interval : idle_interval);
     } catch (const std::exception& e) {
       // A full disk or a database that cannot be written: runs continue, and how they end is recorded later.
-      if (!in_trouble_) log_error("scheduler_waits", {{"why", e.what()}});
-      in_trouble_ = true;
+      set_trouble(e.what());
       read_queue_ = true;
       free_space();
       wait_for(trouble_interval);
     }
   }
   end_runs();
+}
+
+void Scheduler::set_trouble(const std::string& why) {
+  const bool before = !trouble().empty();
+  if (before && why.empty()) log_info("scheduler_continues");
+  if (!before && !why.empty()) log_error("scheduler_waits", {{"why", why}});
+  {
+    const std::lock_guard lock(mutex_);
+    trouble_ = why;
+  }
+  if (before == why.empty()) changes_.notify();
+}
+
+std::string Scheduler::trouble() const {
+  const std::lock_guard lock(mutex_);
+  return trouble_;
 }
 
 /// On a full disk nothing else can be done.
@@ -191,6 +205,9 @@ bool Scheduler::finish(const Job& job) {
   const bool too_many = too_many_failed(summary.failed(), summary.done(), job.planned, job.max_failed_share);
   std::string message = std::to_string(summary.done()) + " realizations done";
   if (summary.failed() > 0) message += ", " + std::to_string(summary.failed()) + " failed";
+  if (summary.replicates_failed() > 0)
+    message += ", " + std::to_string(summary.replicates_failed()) + " of " + std::to_string(job.replicates) +
+               " replicates for the numerical noise failed";
   if (too_many) message += ": more than max_failed_share = " + to_text(job.max_failed_share) + " of those planned";
   if (const std::string quality = quality_line(summary.quality_json()); !quality.empty()) message += "; " + quality;
   if (summary.stopped_early()) message += "; stopped early: the mean has the requested precision";

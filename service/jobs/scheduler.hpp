@@ -64,6 +64,9 @@ class Scheduler {
   /// Tells the thread and the waiting requests that the queue has changed. Thread-safe.
   /// @param job  that has been dismissed, extended or retried, if one has
   void wake(std::optional<std::int64_t> job = {});
+  /// Why nothing can be run or recorded now, in one line: a full disk, a queue that cannot be written; empty: all is
+  /// well. Thread-safe.
+  std::string trouble() const;
   const RunCounters& counters() const { return counters_; }
   ChangeNotifier& changes() { return changes_; }
 
@@ -81,6 +84,7 @@ class Scheduler {
   void note_pending_reasons();
   void run_echo();
   void remove_dismissed();
+  void set_trouble(const std::string& why);
   void free_space();
   bool room_on_disk() const;
 
@@ -95,11 +99,11 @@ class Scheduler {
   Steady::time_point next_renewal_{}, next_reasons_{}, next_removal_{};
   bool read_queue_ = true;  ///< the queue may hold something to do
   bool echo_waiting_ = false;
-  bool in_trouble_ = false;  ///< the last tick failed, and the log says so
-  bool removing_ = true;     ///< directories of dismissed jobs may be left
+  bool removing_ = true;  ///< directories of dismissed jobs may be left
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable wake_;
+  std::string trouble_;  ///< why the last tick failed, as the log says; empty: it did not
   bool woken_ = false;
   std::set<StudyNumber> changed_;  ///< studies that the engine must read again
   std::atomic<bool> draining_{false};

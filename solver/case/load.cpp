@@ -41,7 +41,7 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
   in.integer("max_particles", m.max_particles, {"", 1.0, 1e8},
              {"Refuse to fill more soil and wall particles than this.", "memory; see talus validate"});
   double gravity = -m.g.y;
-  in.number("gravity_m_s2", gravity, {"m/s2", 0.0, 1e4, true},
+  in.number("gravity_m_s2", gravity, {"m/s2", 1e-6, 1e4},
             {"Gravity, downwards.", "9.81 at mid latitudes; n g in a centrifuge"});
   m.g = {0.0, -gravity};
   MaterialInput material;
@@ -107,6 +107,10 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
       free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/max_particles", "/walls", "/particle_placement"}))
     check_geometry(out.value.model, origins, faults);
   if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
+  if (faults.empty()) {
+    check_steps(out.value.model, faults);
+    check_modes(out.value, faults);
+  }
   if (!faults.empty()) throw ConfigError(name_origins(faults.all(), applied));
   for (Fault& warning : find_warnings(out.value)) out.warnings.push_back(std::move(warning));
   use_local_coordinates(out.value);

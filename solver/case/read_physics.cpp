@@ -11,7 +11,7 @@
 namespace talus {
 namespace {
 
-constexpr Quantity friction_angle{"deg", 0.0, 90.0, false, true};
+constexpr Quantity friction_angle{"deg", 0.0, 89.0};  // tan(89 deg) is 57, and grows without bound beyond
 constexpr Quantity duration{"s", 0.0, 1e7, true};
 constexpr double laboratory_gravity = 9.81;  ///< with which laboratories state unit weights [m/s2]
 constexpr std::size_t most_snapshots = 10'000;
@@ -71,7 +71,7 @@ void read_inertial_friction(ObjectReader& in, MaterialInput& m) {
   in.required_number("high_rate_friction_angle_deg", m.high_rate_friction_angle_deg, friction_angle,
                      {"Friction angle at high shear rates, tan = mu_2; more than friction_angle_deg, whose tangent is "
                       "mu_s. A random field varies mu_s; mu_2 - mu_s stays.",
-                      "inclined plane or rotating drum; Jop et al. 2006", "", "> friction_angle_deg and < 90"});
+                      "inclined plane or rotating drum; Jop et al. 2006", "", "> friction_angle_deg and <= 89"});
   in.number(
       "reference_inertial_number", mu_i.I_0, {"", 0.0, 100.0, true},
       {"Inertial number I_0 at which friction has risen by half of mu_2 - mu_s.", "Jop et al. 2006 for glass beads"});
@@ -119,12 +119,12 @@ void read_rate_dependence(ObjectReader& in, MaterialInput& m) {
 
 void read_material(ObjectReader& in, MaterialInput& m) {
   in.string("name", m.name, {1, 100}, {"Name of the material in messages and results."});
-  in.number_in_either("density_kg_m3", m.rho0, {"kg/m3", 0.0, 1e5, true},
+  in.number_in_either("density_kg_m3", m.rho0, {"kg/m3", 1.0, 1e5},
                       {"Reference density of the soil in place.", "laboratory; [Z20] Eq. 3",
                        "none, required unless unit_weight_kN_m3 is given"},
                       true,
                       {"unit_weight_kN_m3",
-                       {"kN/m3", 0.0, 981.0, true},
+                       {"kN/m3", 0.00981, 981.0},
                        1000.0 / laboratory_gravity,
                        {"Unit weight of the soil in place, instead of its density: divided by 9.81 m/s2, whatever "
                         "gravity_m_s2 is.",
@@ -160,7 +160,7 @@ void read_numerics(ObjectReader& in, Numerics& n) {
   in.number("smoothing_ratio", n.h_over_dx, {"", 1.0, 2.0},
             {"Smoothing length over particle spacing, h/dx.",
              "numerical noise of the front, see tests/validation; [Z20] does not state it"});
-  in.optional_number("sound_speed_m_s", n.c_s, {"m/s", 0.0, 1e5, true},
+  in.optional_number("sound_speed_m_s", n.c_s, {"m/s", 0.1, 1e5},
                      {"Numerical speed of sound of the equation of state.", "Monaghan 1994: density then varies by 1 %",
                       "10 sqrt(2 g H), H from the slide's highest point to the lowest of the bed within its reach"});
   in.number("artificial_viscosity_alpha", n.alpha, {"", 0.0, 10.0},
@@ -232,7 +232,7 @@ void read_walls(ObjectReader& in, Walls& w, Boundary& bed) {
 }
 
 void read_time(ObjectReader& in, TimeControl& t) {
-  in.required_number("end_s", t.end, duration, {"Simulated time at which the run ends."});
+  in.required_number("end_s", t.end, {"s", 1e-9, 1e7}, {"Simulated time at which the run ends."});
   in.optional_number(
       "fixed_step_s", t.fixed_step, duration,
       {"Constant time step; not together with max_step_s.", "[Z20] Table 3 uses 3e-4", "none, the step follows cfl"});

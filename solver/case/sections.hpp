@@ -73,6 +73,14 @@ void use_local_coordinates(Case& c);
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults);
 /// Enough wall layers, friction where a field needs it, given coefficients as many as the field takes.
 void check_choices(const Case& c, Faults& faults);
+
+// check_demand.cpp: numbers within their ranges that together ask for more than any run can do
+/// At most 1e9 time steps. @param model  without faults
+void check_steps(const Model& model, Faults& faults);
+/// Correlation lengths that some number of modes resolves.
+void check_modes(const Case& c, Faults& faults);
+
+// checks.cpp, unlikely_values.cpp: warnings
 /// Legal input that is often a mistake: an open end within reach, a wall lower than the slide, a coarse time step.
 std::vector<Fault> find_warnings(const Case& c);
 

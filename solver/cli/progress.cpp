@@ -66,6 +66,7 @@ std::optional<double> time_left(const Progress& p) {
 std::string progress_line(const Progress& p) {
   std::string text =
       std::to_string(p.done) + "/" + std::to_string(p.planned) + " done, " + std::to_string(p.failed) + " failed";
+  if (p.run_again > 0) text += ", " + std::to_string(p.run_again) + " run again";
   if (p.mean) text += format(", mean farthest particle %.2f", *p.mean);
   if (p.mean_half_width) text += format(" +/- %.2f", *p.mean_half_width);
   if (p.mean) text += " m";

@@ -2,6 +2,7 @@
 // it with other bins.
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -49,6 +50,8 @@ std::string misuse(const StatsOptions& options) {
     return "several studies are merged into a new directory: give --out DIR";
   if (options.quantity.empty() && (options.bins > 0 || !options.edges.empty()))
     return "--bins and --edges go with --quantity";
+  if (!std::ranges::all_of(options.edges, [](double edge) { return std::isfinite(edge); }))
+    return "--edges must be finite numbers";
   if (!options.edges.empty() &&
       (options.edges.size() < 2 || !std::is_sorted(options.edges.begin(), options.edges.end()) ||
        std::adjacent_find(options.edges.begin(), options.edges.end()) != options.edges.end()))

@@ -42,6 +42,8 @@ struct StudyOptions {
   std::optional<int> workers;
   std::vector<std::int64_t> range;  ///< first and last, both included
   int threads = 1;
+  int attempts = default_attempts;
+  std::uint64_t time_limit = 0, stall_limit = 60;  // [s]
   std::string executor = "local";
   fs::path slurm;  ///< its configuration; empty: the defaults
   bool json = false, resume = false, retry_failed = false, no_figures = false, prepare = false;
@@ -107,6 +109,9 @@ RunStudyOptions run_options(const StudyOptions& options, const Plan& plan, Repor
   RunStudyOptions run;
   run.program = {fs::read_symlink("/proc/self/exe").string(), "run"};
   run.threads = options.threads;
+  run.attempts = options.attempts;
+  run.time_limit_s = options.time_limit;
+  run.stall_limit_s = options.stall_limit;
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   run.workers = options.workers.value_or(std::max(1, cores / options.threads));
   if (!options.range.empty()) {
@@ -190,6 +195,17 @@ void add_study(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 4096));
   verb->add_option("--threads", options->threads, "OpenMP threads of each process; default: 1")
       ->check(CLI::Range(1, 4096));
+  verb->add_option("--attempts", options->attempts, "Number of crashes after which a realization counts as failed")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  verb->add_option("--time-limit", options->time_limit,
+                   "Wall-clock limit of a realization [s], which fails beyond it; default: none")
+      ->check(CLI::Range(1, 30 * 86400));
+  verb->add_option("--stall-limit", options->stall_limit,
+                   "Time without any use of the CPU after which a realization counts as hung and is run again [s]; "
+                   "0: never")
+      ->check(CLI::Range(0, 86400))
+      ->capture_default_str();
   verb->add_option("--executor", options->executor, "Where realizations run: local (here) or slurm (array jobs)")
       ->type_name("NAME")
       ->check(CLI::IsMember({"local", "slurm"}));

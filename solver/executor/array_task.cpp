@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "executor/slurm_batch.hpp"
+#include "executor/watch.hpp"
 #include "support/text.hpp"
 
 namespace talus::executor {
@@ -70,14 +71,16 @@ class ArrayTask {
     command.arguments.emplace_back("--resume");  // also where there is nothing to resume, or where it is finished
     const Clock::time_point begin = Clock::now();
     Process process(command, run.log, run.log);
+    Watch watch(command.limits);
     bool told = false;
     for (std::optional<ProcessEnd> end; !(end = process.poll());) {
       signals_.wait();
-      if (signals_.asked_to_stop() && !std::exchange(told, true)) process.signal(SIGTERM);
-      status.timed_out |=
-          command.limits.wall_seconds > 0 && seconds_since(begin) > static_cast<double>(command.limits.wall_seconds);
-      if (status.timed_out || batch_.is_killed(place)) process.signal(SIGKILL);
+      if (signals_.asked_to_stop() && !std::exchange(told, true)) process.ask_to_end();
+      watch.look(process);
+      if (batch_.is_killed(place)) process.signal(SIGKILL);
     }
+    status.timed_out = watch.timed_out();
+    status.why = watch.why();
     status.end = *process.poll();
     status.seconds = seconds_since(begin);
     return status;

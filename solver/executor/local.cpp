@@ -2,16 +2,15 @@
 
 #include <signal.h>
 
-#include <chrono>
 #include <list>
 
 #include "executor/executor.hpp"
+#include "executor/watch.hpp"
 
 namespace talus::executor {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 class LocalExecutor final : public Executor {
  public:
@@ -24,10 +23,9 @@ class LocalExecutor final : public Executor {
     if (!resume) fs::remove_all(run.directory);
     Command command = run.command;
     if (resume) command.arguments.emplace_back("--resume");
-    const std::uint64_t limit = command.limits.wall_seconds;
     workers_.push_back({.id = ++last_,
                         .resumed = resume,
-                        .deadline = limit == 0 ? Clock::time_point::max() : Clock::now() + std::chrono::seconds(limit),
+                        .watch = Watch(command.limits),
                         .process = Process(command, run.log, run.log)});
     return last_;
   }
@@ -36,18 +34,22 @@ class LocalExecutor final : public Executor {
     std::vector<Ended> all;
     std::erase_if(workers_, [&](Worker& worker) {
       const auto end = worker.process.poll();
-      if (end) all.push_back({.id = worker.id, .end = *end, .resumed = worker.resumed, .timed_out = worker.timed_out});
-      if (!end && !worker.timed_out && Clock::now() > worker.deadline) {
-        worker.timed_out = true;
-        worker.process.signal(SIGKILL);
+      if (!end) {
+        worker.watch.look(worker.process);
+        return false;
       }
-      return end.has_value();
+      all.push_back({.id = worker.id,
+                     .end = *end,
+                     .resumed = worker.resumed,
+                     .timed_out = worker.watch.timed_out(),
+                     .why = worker.watch.why()});
+      return true;
     });
     return all;
   }
 
   void stop_all() override {
-    for (const Worker& worker : workers_) worker.process.signal(SIGTERM);
+    for (const Worker& worker : workers_) worker.process.ask_to_end();
   }
   void kill(RunId id) override {
     for (const Worker& worker : workers_)
@@ -60,8 +62,7 @@ class LocalExecutor final : public Executor {
   struct Worker {
     RunId id;
     bool resumed;
-    Clock::time_point deadline;
-    bool timed_out = false;
+    Watch watch;
     Process process;
   };
   std::size_t most_workers_;

@@ -124,6 +124,11 @@ void Process::signal(int number) const {
   if (pid_ > 0 && !end_) ::kill(-pid_, number);
 }
 
+void Process::ask_to_end() const {
+  signal(SIGTERM);
+  signal(SIGCONT);
+}
+
 std::string signal_text(int number) {
   return std::string(::strsignal(number)) + " (signal " + std::to_string(number) + ")";
 }

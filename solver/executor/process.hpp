@@ -17,8 +17,9 @@ namespace talus::executor {
 struct Limits {
   std::uint64_t memory_bytes = 0;  ///< address space
   std::uint64_t cpu_seconds = 0;
-  std::uint64_t file_bytes = 0;    ///< of each file it writes
-  std::uint64_t wall_seconds = 0;  ///< enforced by the caller, not by Process
+  std::uint64_t file_bytes = 0;     ///< of each file it writes
+  std::uint64_t wall_seconds = 0;   ///< enforced by Watch, not by Process
+  std::uint64_t stall_seconds = 0;  ///< time without any use of the CPU; enforced by Watch, not by Process
   bool core_dumps = true;
 };
 
@@ -51,6 +52,8 @@ class Process {
   std::optional<ProcessEnd> poll();
   /// Sends a signal to it and to what it started, if it still runs.
   void signal(int number) const;
+  /// SIGTERM; a process that was stopped is continued to get it.
+  void ask_to_end() const;
 
  private:
   pid_t pid_ = -1;

@@ -26,6 +26,7 @@ Json to_json(const Run& run) {
             {"cpu_seconds", limits.cpu_seconds},
             {"file_bytes", limits.file_bytes},
             {"wall_seconds", limits.wall_seconds},
+            {"stall_seconds", limits.stall_seconds},
             {"core_dumps", limits.core_dumps}}},
           {"niceness", run.command.niceness},
           {"directory", run.directory.string()},
@@ -42,6 +43,7 @@ Run run_of(const Json& json) {
                         .cpu_seconds = limits.at("cpu_seconds"),
                         .file_bytes = limits.at("file_bytes"),
                         .wall_seconds = limits.at("wall_seconds"),
+                        .stall_seconds = limits.value("stall_seconds", std::uint64_t{0}),  // older batches lack it
                         .core_dumps = limits.at("core_dumps")};
   run.command.niceness = json.at("niceness");
   run.directory = json.at("directory").get<std::string>();

@@ -26,7 +26,7 @@ struct RunStatus {
   double seconds = 0.0;  ///< wall clock of this process
   bool resumed = false;
   bool timed_out = false;
-  std::string why = {};  ///< why it could not be started
+  std::string why = {};  ///< why it could not be started, or was ended as hanging
 };
 
 /// A run of a batch by array task and place in it.

@@ -14,6 +14,7 @@
 #include "io/history.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
+#include "study/record.hpp"
 #include "support/error.hpp"
 
 namespace talus {
@@ -149,6 +150,8 @@ std::vector<fs::path> plot_study(const fs::path& directory) {
   for (const std::string which : {"first", "worst"}) {
     const fs::path file = directory / "profiles" / (which + ".vtkhdf");
     if (!fs::exists(file)) continue;
+    if (is_damaged_profile({directory}, which))
+      throw IoError(file.string() + " is damaged; the same talus study command makes it again");
     const std::string name = which == "first" ? "First realization. " : "Realization with the longest run-out. ";
     draw_motion(album, file, "_" + which, model, {study.title, name, study.source, study.quality});
   }

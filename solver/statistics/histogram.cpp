@@ -48,7 +48,9 @@ Histogram histogram(std::span<const double> sample, std::vector<double> edges) {
 
 std::vector<double> round_grid(double lo, double hi, double width) {
   assert(lo <= hi && width > 0.0);
-  RoundStep step = round_step(width);
+  // A finer grid could not be told from rounding, and its lines could not be counted.
+  const double finest = 1e-12 * std::max({std::abs(lo), std::abs(hi), 1.0});
+  RoundStep step = round_step(std::max(width, finest));
   while ((hi - lo) / step.value() > most_intervals) step = step.next();
   double first = std::floor(lo / step.value());
   if (step.multiple(first + 1.0) <= lo) first += 1.0;  // the quotient may fall just below an integer

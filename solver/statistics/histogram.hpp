@@ -32,7 +32,8 @@ std::vector<double> round_edges(std::span<const double> sample);
 std::vector<double> equal_edges(std::span<const double> sorted, std::size_t bins);
 
 /// Multiples of the round number near `width` (at most 1000 intervals) from at or below `lo` to at or above `hi`; lo <=
-/// hi, width > 0.
+/// hi, both at most 1e100 in magnitude, width > 0. A width below 1e-12 of the larger of |lo|, |hi| and 1 counts as
+/// that.
 std::vector<double> round_grid(double lo, double hi, double width);
 
 /// Wilson's score interval for k successes of n >= 1 (JASA 22, 1927), 95 %.

@@ -56,6 +56,20 @@ void DirectoryStore::forget_failures() {
     });
 }
 
+std::vector<std::int64_t> DirectoryStore::forget_damaged_profiles() {
+  std::optional<std::int64_t> farthest;
+  for (const auto& [index, record] : runs_)
+    if (record.done && (!farthest || *record.influence_zone() > *runs_.at(*farthest).influence_zone()))
+      farthest = index;
+  std::vector<std::int64_t> damaged = damaged_profiles(info_.paths, farthest);
+  std::erase_if(damaged, [&](std::int64_t index) { return !runs_here({.index = index}) || !runs_.contains(index); });
+  for (const std::int64_t index : damaged) {
+    fs::remove(info_.paths.result({.index = index}));
+    runs_.erase(index);
+  }
+  return damaged;
+}
+
 bool DirectoryStore::runs_here(const RunKey& key) const {
   if (key.is_replicate()) return info_.first == 0 && !dropped_replicates_;
   return key.index >= info_.first && key.index < info_.end && !dropped_realizations_;

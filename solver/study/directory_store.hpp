@@ -28,6 +28,9 @@ class DirectoryStore final : public Store {
   const Records& records(RunKind kind) const { return kind == RunKind::replicate ? replicates_ : runs_; }
   /// Removes all failure records, so that those runs are carried out again.
   void forget_failures();
+  /// Removes the results of the realizations whose kept profile is damaged and that are run here, so that they are
+  /// carried out again. @return their indices
+  std::vector<std::int64_t> forget_damaged_profiles();
 
   std::optional<Claim> claim() override;
   StudyInfo study(StudyNumber) override { return info_; }

@@ -46,8 +46,7 @@ class Columns {
  public:
   /// @param fail  called with what is wrong with the header
   template <class Fail>
-  Columns(const std::vector<std::string>& header, const std::string& index_name, const Fail& fail)
-      : size_(header.size()) {
+  Columns(const std::vector<std::string>& header, const std::string& index_name, const Fail& fail) : header_(header) {
     const std::vector<std::string> known = column_names(index_name);
     for (std::size_t i = 0; i < header.size(); ++i) {
       if (std::ranges::find(known, header[i]) == known.end())
@@ -61,7 +60,8 @@ class Columns {
     index_ = at_.at(index_name);
   }
 
-  std::size_t size() const { return size_; }
+  std::size_t size() const { return header_.size(); }
+  const std::string& name(std::size_t at) const { return header_[at]; }
   std::size_t index() const { return index_; }
   /// The place of a column; unset where the table lacks it.
   std::optional<std::size_t> find(std::string_view name) const {
@@ -70,7 +70,8 @@ class Columns {
   }
 
  private:
-  std::size_t size_, index_ = 0;
+  std::vector<std::string> header_;
+  std::size_t index_ = 0;
   std::map<std::string, std::size_t, std::less<>> at_;
 };
 
@@ -79,7 +80,9 @@ template <class Number, class Fail>
 void read_number(const std::string& field, Number& value, const Fail& fail) {
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(static_cast<double>(value)))
-    fail(in_quotes(field) + " is not a number");
+    return fail(in_quotes(field) + " is not a number");
+  if (std::abs(static_cast<double>(value)) > largest_number)
+    fail(field + " is out of range; allowed -1e12 to 1e12, beyond which no run has a number");
 }
 
 Record record(const std::vector<std::string>& fields, const Columns& columns, const std::string& place) {
@@ -87,8 +90,9 @@ Record record(const std::vector<std::string>& fields, const Columns& columns, co
   if (fields.size() != columns.size())
     fail("has " + std::to_string(fields.size()) + " fields instead of " + std::to_string(columns.size()));
   const auto number = [&](std::size_t at, auto& value) {
-    read_number(fields[at], value,
-                [&](const std::string& why) { fail("field " + std::to_string(at + 1) + ": " + why); });
+    read_number(fields[at], value, [&](const std::string& why) {
+      fail("field " + std::to_string(at + 1) + " (" + columns.name(at) + "): " + why);
+    });
   };
   const auto text = [&](const char* name) {
     const std::optional<std::size_t> at = columns.find(name);
@@ -96,6 +100,8 @@ Record record(const std::vector<std::string>& fields, const Columns& columns, co
   };
   Record r;
   number(columns.index(), r.index);
+  if (r.index < 0 || r.index >= end_of_indices)
+    fail("has the " + columns.name(columns.index()) + " " + std::to_string(r.index) + ", which no study has");
   const std::string status = text("status");
   if (status == "failed") return failed_record(r.index, text("reason"));
   if (status != "done") fail("has the status \"" + status + "\", which is neither done nor failed");

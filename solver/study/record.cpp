@@ -1,8 +1,11 @@
 #include "study/record.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <limits>
 
+#include "support/digest.hpp"
 #include "support/files.hpp"
 #include "support/json.hpp"
 
@@ -26,6 +29,21 @@ void read_quality(const Json& json, Record& record) {
   if (!verdict) throw IoError("unknown verdict");
   record.verdict = *verdict;
   record.objections = objections_text(quality);
+}
+
+constexpr const char* snapshots_ending = ".vtkhdf";
+
+/// FNV-1a of a file's content. @throws IoError
+std::string content_hash(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::vector<char> block(std::size_t{1} << 20);
+  std::uint64_t hash = fnv1a64_start;
+  do {
+    in.read(block.data(), static_cast<std::streamsize>(block.size()));
+    hash = fnv1a64({block.data(), static_cast<std::size_t>(in.gcount())}, hash);
+  } while (in);
+  if (!in.eof()) throw IoError(file.string() + " cannot be read");
+  return hex_digits(hash);
 }
 
 /// Puts a second name on a file, or a copy where the file system has no links; by rename.
@@ -79,6 +97,7 @@ std::optional<Record> read_result(const fs::path& file, const RunKey& key, const
         value = std::numeric_limits<std::remove_reference_t<decltype(value)>>::quiet_NaN();
       else
         place.at(name).get_to(value);
+      if (std::abs(static_cast<double>(value)) > largest_number) throw IoError("a number that no run has");
     });
     json.at("digest").get_to(record.digest);
     for (const Json& measure : json.value("lower_bounds", Json::array()))
@@ -129,11 +148,33 @@ std::optional<std::string> read_failure(const fs::path& file) try {
 void keep_profiles(const StudyPaths& paths, const RunKey& key, double influence_zone, bool farthest) {
   const fs::path snapshots = paths.work(key) / "snapshots.vtkhdf";
   if (key.is_replicate() || !fs::exists(snapshots)) return;
-  if (key.index == 0) link_or_copy(snapshots, paths.profiles() / "first.vtkhdf");
-  if (!farthest) return;
-  link_or_copy(snapshots, paths.profiles() / "worst.vtkhdf");
-  write_file_atomically(paths.profiles() / "worst.json",
-                        with_checksum({{"realization", key.index}, {"influence_zone_m", influence_zone}}));
+  const auto keep = [&](const std::string& profile) {
+    const fs::path place = paths.profiles() / profile;
+    link_or_copy(snapshots, fs::path(place).concat(snapshots_ending));
+    write_file_atomically(fs::path(place).concat(".json"), with_checksum({{"realization", key.index},
+                                                                          {"influence_zone_m", influence_zone},
+                                                                          {"snapshots", content_hash(snapshots)}}));
+  };
+  if (key.index == 0) keep(first_profile);
+  if (farthest) keep(farthest_profile);
+}
+
+bool is_damaged_profile(const StudyPaths& paths, const std::string& profile) try {
+  const fs::path place = paths.profiles() / profile, about = fs::path(place).concat(".json");
+  if (!fs::exists(about)) return false;
+  const auto hash = read_json(about, max_result_bytes, "the description of a profile", [](const Json& json) {
+    return json.value("snapshots", std::string());  // of an earlier version without
+  });
+  return !hash.empty() && hash != content_hash(fs::path(place).concat(snapshots_ending));
+} catch (const IoError&) {
+  return true;
+}
+
+std::vector<std::int64_t> damaged_profiles(const StudyPaths& paths, std::optional<std::int64_t> farthest) {
+  std::vector<std::int64_t> damaged;
+  if (is_damaged_profile(paths, first_profile)) damaged.push_back(0);
+  if (farthest && farthest != 0 && is_damaged_profile(paths, farthest_profile)) damaged.push_back(*farthest);
+  return damaged;
 }
 
 }  // namespace talus

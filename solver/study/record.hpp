@@ -79,6 +79,11 @@ void visit_numbers(AnyRecord& record, const Use& use) {
     std::visit([&](auto member) { use(of.key, of.object, record.*member); }, of.member);
 }
 
+/// No number of a run is larger: metres, seconds, steps and degrees stay far below. A larger one is damage.
+inline constexpr double largest_number = 1e12;
+/// More realizations than a study can have.
+inline constexpr std::int64_t end_of_indices = 1'000'000'000;
+
 /// Why a run failed.
 struct Failure {
   std::string reason;  ///< one line
@@ -113,9 +118,20 @@ void write_failure(const StudyPaths& paths, const RunKey& key, const Failure& fa
 std::optional<std::string> read_failure(const std::filesystem::path& file);
 
 /// Keeps the snapshots of realization 0 as profiles/first.vtkhdf and those of the farthest so far as
-/// profiles/worst.vtkhdf, with its number in worst.json. Does nothing for a run that wrote no snapshots.
+/// profiles/worst.vtkhdf, each with its number and the hash of its snapshots in a JSON file of the same name. Does
+/// nothing for a run that wrote no snapshots.
 /// @param farthest  no recorded realization went farther
 /// @throws IoError
 void keep_profiles(const StudyPaths& paths, const RunKey& key, double influence_zone, bool farthest);
+
+/// The profiles that a study keeps.
+inline constexpr const char* first_profile = "first";
+inline constexpr const char* farthest_profile = "worst";
+/// Whether a profile of a study is missing or does not agree with the hash beside it. One without a hash was never
+/// kept, or by an earlier version: nothing is known of it.
+bool is_damaged_profile(const StudyPaths& paths, const std::string& profile);
+/// The realizations whose profile is damaged, and which must be run again to have it.
+/// @param farthest  the farthest realization recorded; unset: there is none
+std::vector<std::int64_t> damaged_profiles(const StudyPaths& paths, std::optional<std::int64_t> farthest);
 
 }  // namespace talus

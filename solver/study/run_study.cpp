@@ -51,7 +51,7 @@ class StudyRunner {
   DirectoryStore store_;
   std::unique_ptr<executor::Executor> executor_;
   FileDescriptor workers_lock_;
-  std::int64_t made_ = 0;
+  std::int64_t made_ = 0, run_again_ = 0;
   Clock::time_point begin_ = Clock::now(), reported_ = begin_;
 };
 
@@ -97,6 +97,7 @@ void StudyRunner::note_event(const RunEvent& event) {
     case Kind::taken_over:
       return note(name + " had finished before; taken over");
     case Kind::crashed:
+      ++run_again_;
       return note(name + ": " + event.reason + "; running it again");
     case Kind::given_back:
       if (!event.reason.empty() && interrupts() == 0) note(name + ": " + event.reason + "; running it again");
@@ -110,7 +111,9 @@ EngineOptions StudyRunner::engine_options() {
   return {.attempts = options_.attempts,
           .command =
               [this](const StudyInfo& study, const RunKey& key) {
-                return executor::Command{.arguments = run_arguments(options_.program, study, key, options_.threads)};
+                return executor::Command{
+                    .arguments = run_arguments(options_.program, study, key, options_.threads),
+                    .limits = {.wall_seconds = options_.time_limit_s, .stall_seconds = options_.stall_limit_s}};
               },
           .room_on_disk = {},
           .report = [this](const RunEvent& event) { note_event(event); }};
@@ -138,6 +141,7 @@ void StudyRunner::report(Engine& engine, bool now) {
                    .floor_planned = options_.first == 0 ? plan_.study.noise_floor_replicates : 0,
                    .floor_made = options_.first == 0 ? estimator.replicates_made() : 0,
                    .made_now = made_,
+                   .run_again = run_again_,
                    .running = static_cast<int>(engine.running()),
                    .elapsed = std::chrono::duration<double>(Clock::now() - begin_).count(),
                    .mean = estimator.mean(),
@@ -164,6 +168,8 @@ void StudyRunner::run_all(Engine& engine) {
 StudyEnd StudyRunner::run() {
   wait_for_earlier_workers();
   if (options_.retry_failed) store_.forget_failures();
+  for (const std::int64_t index : store_.forget_damaged_profiles())
+    note("the kept profile of realization " + std::to_string(index) + " is damaged; running it again");
   Engine engine(store_, std::move(executor_), engine_options());
   engine.estimator(0);  // makes the directories, and applies what the records decide
   try {

@@ -24,6 +24,7 @@ struct Progress {
   std::int64_t floor_planned = 0;  ///< noise-floor replicates
   std::int64_t floor_made = 0;     ///< done or failed
   std::int64_t made_now = 0;       ///< runs ended since this process began
+  std::int64_t run_again = 0;      ///< runs of this process that crashed or hung and were run again
   int running = 0;
   double elapsed = 0.0;                        ///< since this process began [s]
   std::optional<double> mean = {};             ///< influence zone [m]
@@ -40,6 +41,8 @@ struct RunStudyOptions {
   std::int64_t first = 0;            ///< realizations first <= i < last are run here, the others elsewhere
   std::optional<std::int64_t> last;  ///< unset: the planned number
   int attempts = default_attempts;   ///< crashes of a run before it has failed, >= 1
+  std::uint64_t time_limit_s = 0;    ///< of a run [s], which fails beyond it; 0: none
+  std::uint64_t stall_limit_s = 0;   ///< without any use of the CPU [s], after which a run is run again; 0: none
   bool retry_failed = false;         ///< run again what has failed before
   bool resume = false;               ///< accept a study of an earlier end: what still moved there is run again
   /// How often a person has asked to stop: once, workers checkpoint; twice, they are killed.

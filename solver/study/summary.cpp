@@ -210,11 +210,12 @@ Json StudySummary::mean_phi_json() const {
   return all;
 }
 
+std::int64_t StudySummary::replicates_failed() const { return std::ranges::count(replicates_, false, &Record::done); }
+
 Json StudySummary::replicates_json() const {
-  const auto done = std::count_if(replicates_.begin(), replicates_.end(), [](const Record& r) { return r.done; });
   return {{"replicates_planned", plan_.study.noise_floor_replicates},
-          {"replicates_done", done},
-          {"replicates_failed", static_cast<std::int64_t>(replicates_.size()) - done},
+          {"replicates_done", static_cast<std::int64_t>(replicates_.size()) - replicates_failed()},
+          {"replicates_failed", replicates_failed()},
           {"relative_step_of_tan_phi", 1e-6}};
 }
 

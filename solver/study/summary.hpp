@@ -45,6 +45,7 @@ class StudySummary {
 
   std::int64_t done() const { return static_cast<std::int64_t>(phi_.size()); }
   std::int64_t failed() const { return static_cast<std::int64_t>(failures_.size()); }
+  std::int64_t replicates_failed() const;
   /// What study.json says of the verdicts.
   Json quality_json() const;
   /// The study ended before its planned number.

@@ -145,12 +145,14 @@ std::uint64_t disk_left(const fs::path& path) {
 }
 
 TriedLock try_lock(const fs::path& path, bool inherited) {
-  FileDescriptor file(::open(path.c_str(), O_RDWR | O_CREAT | (inherited ? 0 : O_CLOEXEC), 0666));
+  const int how = fs::is_directory(path) ? O_RDONLY | O_DIRECTORY : O_RDWR | O_CREAT;
+  FileDescriptor file(::open(path.c_str(), how | (inherited ? 0 : O_CLOEXEC), 0666));
   if (!file) throw_io_error("create", path, errno);
   for (;;) {
     if (::flock(file.get(), LOCK_EX | LOCK_NB) == 0) return {.file = std::move(file)};
     if (errno == EWOULDBLOCK) return {.file = FileDescriptor()};
-    if (errno == ENOSYS || errno == EOPNOTSUPP || errno == ENOLCK) return {.file = std::move(file), .supported = false};
+    if (errno == ENOSYS || errno == EOPNOTSUPP || errno == ENOLCK || errno == EBADF)  // EBADF: a directory on NFS
+      return {.file = std::move(file), .supported = false};
     if (errno != EINTR) throw_io_error("lock", path, errno);
   }
 }

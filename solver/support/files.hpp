@@ -87,7 +87,7 @@ struct TriedLock {
   FileDescriptor file;    ///< the lock ends with it, however the process ends; empty where another process holds it
   bool supported = true;  ///< false: the file system has no locks; the file is open, and nothing is locked
 };
-/// Asks for the lock of a file, which is created if need be.
+/// Asks for the lock of a directory, or of a file, which is created if need be.
 /// @param inherited  child processes hold the lock too
 /// @throws IoError when the file cannot be opened
 TriedLock try_lock(const std::filesystem::path& path, bool inherited);

@@ -64,6 +64,16 @@ struct Fixture {
 
 }  // namespace
 
+TEST(ArrayTask, EndsARunThatHangs) {
+  Fixture f;
+  f.add("trap 'exit 6' TERM; kill -STOP $$; exit 0");
+  f.runs.back().command.limits.stall_seconds = 1;
+  f.write_batch();
+  EXPECT_EQ(f.wait(f.start()), 0);
+  EXPECT_EQ(f.batch.status({3, 0}).end.exit_code, 6);
+  EXPECT_EQ(f.batch.status({3, 0}).why, "hung: no CPU time used for 1 s");
+}
+
 TEST(ArrayTask, TellsOfEveryRunHowItEnded) {
   Fixture f;
   f.add("echo $1");

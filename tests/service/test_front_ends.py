@@ -65,7 +65,7 @@ class FrontEnds(ServiceTest):
         self.assertEqual(one.summary(), other.summary())
         for pattern in ("runs/*", "floor/*", "profiles/*", "*.csv", "plan.json", "case.resolved.json"):
             self.assertEqual(one.names(pattern), other.names(pattern), pattern)
-        self.assertEqual(one.names("profiles/*"), ["first.vtkhdf", "worst.json", "worst.vtkhdf"])
+        self.assertEqual(one.names("profiles/*"), ["first.json", "first.vtkhdf", "worst.json", "worst.vtkhdf"])
         for file in ("plan.json", "case.resolved.json", "profiles/worst.json"):
             self.assertEqual((one.directory / file).read_text(), (other.directory / file).read_text(), file)
         farthest = one.summary()["extremes"]["farthest_realization"]

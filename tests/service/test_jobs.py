@@ -122,7 +122,7 @@ class Ours(ServiceTest):
             (directory / f"{i}.json").write_text("{}")
             os.utime(directory / f"{i}.json", (10**9 - i, 10**9 - i))
         self.assertEqual(self.daemon.get(f"/jobs/{job}/realizations/0/profile").status, 200)
-        kept = {"first.vtkhdf", "worst.vtkhdf", "worst.json"}  # the study's own
+        kept = {"first.vtkhdf", "first.json", "worst.vtkhdf", "worst.json"}  # the study's own
         self.assertEqual({p.name for p in directory.iterdir()}, {f"{i}.json" for i in range(16)} | kept)
 
     def test_extending_leaves_old_runs_untouched(self):

@@ -85,8 +85,8 @@ TEST(LoadCase, RefusesAValueInTwoUnits) {
   }
   EXPECT_EQ(
       faults_of(with("/material", {{"friction_angle_deg", 30}})),
-      std::vector<std::string>{"/material/density_kg_m3: is missing (or unit_weight_kN_m3); unit kg/m3, allowed > "
-                               "0 and <= 1e+05"});
+      std::vector<std::string>{"/material/density_kg_m3: is missing (or unit_weight_kN_m3); unit kg/m3, allowed >= "
+                               "1 and <= 1e+05"});
 }
 
 const Json grains = Json::parse(
@@ -147,7 +147,7 @@ TEST(LoadCase, RefusesMuIThatContradictsTheRest) {
                 "/material/mu_i/grain_diameter_mm: is given beside grain_diameter_m; give one of the two"});
   EXPECT_EQ(faults("/material/mu_i", Json::object(), minimal()),
             (std::vector<std::string>{
-                "/material/mu_i/high_rate_friction_angle_deg: is missing; unit deg, allowed >= 0 and < 90",
+                "/material/mu_i/high_rate_friction_angle_deg: is missing; unit deg, allowed >= 0 and <= 89",
                 "/material/mu_i/grain_diameter_m: is missing (or grain_diameter_mm); unit m, allowed > 0 and <= 10"}));
 }
 

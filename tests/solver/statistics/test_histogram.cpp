@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <random>
 
 #include "statistics/histogram.hpp"
 
@@ -102,6 +104,25 @@ TEST(ExceedanceCurve, FailuresStayInTheDenominatorAndWidenTheBounds) {
   EXPECT_EQ(e.hi, *wilson(10, 15).hi);
   EXPECT_TRUE(exceedance({}, std::vector{1.0}, 0).empty());
   EXPECT_EQ(exceedance({}, std::vector{1.0}, 2).front().p_if_failed_all_exceed, 1.0);
+}
+
+TEST(RoundGrid, EndsWhateverTheValues) {
+  std::mt19937 random(1);
+  const auto any = [&] {  // any magnitude from a denormal number to 1e100
+    const double magnitude = std::pow(10.0, std::uniform_real_distribution(-323.0, 100.0)(random));
+    return random() % 8 == 0 ? 0.0 : random() % 2 == 0 ? magnitude : -magnitude;
+  };
+  for (int i = 0; i < 20'000; ++i) {
+    const auto [lo, hi] = std::minmax({any(), any()});
+    const double width = std::max(std::abs(any()), 1e-300);
+    const std::vector<double> grid = round_grid(lo, hi, width);
+    ASSERT_LE(grid.size(), 1003u) << lo << " " << hi << " " << width;
+    ASSERT_LE(grid.front(), lo);
+    ASSERT_GE(grid.back(), hi);
+    ASSERT_TRUE(std::ranges::is_sorted(grid));
+    const std::vector<double> sample{lo, hi};
+    ASSERT_LE(round_edges(sample).size(), 1003u);
+  }
 }
 
 TEST(EqualEdges, SpanTheSampleExactly) {

@@ -108,6 +108,8 @@ int main(int argc, char** argv) {
   if (what == "full") return std::fprintf(stderr, "cannot write: No space left on device\n"), 5;
   if (what == "no-result") return 0;
   if (what == "kill" || (what == "kill-once" && !before)) ::raise(SIGKILL);
+  if (what == "hang" || (what == "hang-once" && !before)) ::raise(SIGSTOP);
+  if (asked_to_stop) return talus::fixtures::write(out / "checkpoint.h5", "state"), 6;
   if (what == "bad-checkpoint" && !before) return talus::fixtures::write(out / "checkpoint.h5", "damaged"), 6;
   if (what == "bad-checkpoint" && resumed) return 5;
   if (what == "stop-once" && !before) return talus::fixtures::write(out / "checkpoint.h5", "state"), 6;

@@ -163,6 +163,27 @@ TEST(Csv, AcceptsLineEndsOfOtherSystems) {
   EXPECT_EQ(read_csv(directory / "t.csv", "index").front().reason, "x");
 }
 
+TEST(Csv, NumbersThatNoRunHasAreRefusedWithRowAndColumn) {
+  const auto row = [](const std::string& index, const std::string& zone, const std::string& steps) {
+    return refusal(head + index + ",done," + zone + ",1,1,1,1,1,1," + steps + ",1,d,,,,,,,\n");
+  };
+  EXPECT_EQ(row("3", "1e12", "1"), "accepted");
+  for (const char* zone : {"1e300", "-1e300", "1.1e12"})
+    EXPECT_NE(row("3", zone, "1")
+                  .find("t.csv:2 field 3 (influence_zone_m): " + std::string(zone) +
+                        " is out of range; allowed -1e12 to 1e12"),
+              std::string::npos)
+        << row("3", zone, "1");
+  for (const char* zone : {"inf", "-inf", "nan", "1e309"})
+    EXPECT_NE(row("3", zone, "1").find("field 3 (influence_zone_m): \"" + std::string(zone) + "\" is not a number"),
+              std::string::npos);
+  EXPECT_NE(row("3", "1", "9223372036854775807").find("field 10 (steps): 9223372036854775807 is out of range"),
+            std::string::npos);
+  for (const char* index : {"-1", "1000000000"})
+    EXPECT_NE(row(index, "1", "1").find("t.csv:2 has the index " + std::string(index) + ", which no study has"),
+              std::string::npos);
+}
+
 TEST(Csv, NamesFileLineAndFault) {
   const std::string good = head + csv_line(done(3, 34.5));
   EXPECT_NE(refusal("").find("t.csv is empty"), std::string::npos);
@@ -177,7 +198,8 @@ TEST(Csv, NamesFileLineAndFault) {
   EXPECT_NE(refusal(good + "3,failed,,,,,,,,,,,x,,,,,,\n").find("t.csv:3 has the index 3 out of order, or twice"),
             std::string::npos);
   EXPECT_NE(refusal(head + "3,lost,,,,,,,,,,,x,,,,,,\n").find("t.csv:2 has the status \"lost\""), std::string::npos);
-  EXPECT_NE(refusal(head + "3,done,far,1,1,1,1,1,1,1,1,d,,,,,,,\n").find("t.csv:2 field 3: \"far\" is not a number"),
+  EXPECT_NE(refusal(head + "3,done,far,1,1,1,1,1,1,1,1,d,,,,,,,\n")
+                .find("t.csv:2 field 3 (influence_zone_m): \"far\" is not a number"),
             std::string::npos);
   EXPECT_NE(refusal(head + "3,done,nan,1,1,1,1,1,1,1,1,d,,,,,,,\n").find("\"nan\" is not a number"), std::string::npos);
   EXPECT_NE(refusal(head + "3,failed,,,,,,,,,,,\"x\n").find("t.csv:2 has 0 fields"),

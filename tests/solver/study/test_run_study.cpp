@@ -1,4 +1,4 @@
-// The study against a stand-in for `talus run` (fake_run.cpp) that keeps a diary of what was asked of it.
+// The study against fake_run. What ends its workers or the study itself from outside: test_study_kills.cpp.
 
 #include <signal.h>
 #include <sys/syscall.h>
@@ -6,14 +6,9 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <map>
-#include <sstream>
 #include <thread>
 
-#include "executor/process.hpp"
-#include "studies.hpp"
-#include "study/publish.hpp"
-#include "study/run_study.hpp"
+#include "fake_study.hpp"
 #include "support/error.hpp"
 
 using namespace talus;
@@ -35,63 +30,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-/// A study in a directory of its own; run() may be called again and again, as a person repeats a command.
-struct Study {
-  TemporaryDirectory directory;
-  fs::path out = directory / "study";
-  fs::path diary = directory / "diary";
-  Plan plan;
-  RunStudyOptions options;
-  std::string script;
-  int milliseconds = 5;
-  std::vector<std::string> notes;
-
-  explicit Study(std::int64_t realizations, std::string script_ = "ok")
-      : plan(fixtures::plan(realizations)), script(std::move(script_)) {
-    options.workers = 3;
-    options.threads = 2;
-    options.poll = std::chrono::milliseconds(1);
-    options.note = [this](const std::string& text) { notes.push_back(text); };
-    plan.study.max_failed_share = 1.0;
-    options.attempts = 2;
-  }
-  std::vector<std::string> program() const { return {FAKE_RUN, diary.string(), std::to_string(milliseconds), script}; }
-  StudyEnd run() {
-    options.program = program();
-    return run_study(plan, {{"title", "A slope"}, {"study", {{"realizations", plan.study.realizations}}}}, out,
-                     options);
-  }
-  /// How often the diary has a line that starts so.
-  int count(const std::string& start) const {
-    int n = 0;
-    std::istringstream in(content(diary));
-    for (std::string line; std::getline(in, line);) n += line.starts_with(start);
-    return n;
-  }
-  /// How often the diary says that the same run ended.
-  int most_ends() const {
-    std::map<std::string, int> ends;
-    std::istringstream in(content(diary));
-    int most = 0;
-    for (std::string line; std::getline(in, line);)
-      if (line.starts_with("end ")) most = std::max(most, ++ends[line]);
-    return most;
-  }
-  std::vector<Record> records() const { return read_csv(out / "realizations.csv", "index"); }
-  json summary() const { return json::parse(content(out / "study.json")); }
-  std::string text_of_notes() const {
-    std::string all;
-    for (const std::string& n : notes) all += n + "\n";
-    return all;
-  }
-};
-
-/// Runs `action` until it is true.
-template <class Condition>
-void wait_until(Condition condition) {
-  while (!condition()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-}
 
 }  // namespace
 
@@ -232,19 +170,6 @@ TEST(RunStudy, FailedOnesAreTriedAgainWhenAsked) {
   EXPECT_FALSE(fs::exists(s.out / "runs" / "000002.failed.json"));
 }
 
-TEST(RunStudy, AKilledWorkerIsTriedAgain) {
-  Study s(5, "1=kill-once,3=kill,4=stop-once");
-  EXPECT_EQ(s.run(), StudyEnd::finished);
-  EXPECT_EQ(s.count("begin 1 "), 2);
-  EXPECT_EQ(s.count("begin 3 "), 2);
-  EXPECT_EQ(s.count("begin 4 resumed"), 1);
-  const std::vector<Record> all = s.records();
-  EXPECT_TRUE(all[1].done);
-  EXPECT_TRUE(all[4].done);
-  EXPECT_EQ(all[3].reason, "killed: Killed (signal 9), 2 times: starting");
-  EXPECT_EQ(json::parse(content(s.out / "runs" / "000003.failed.json"))["signal"], 9);
-}
-
 TEST(RunStudy, ABadCheckpointIsNotTheEnd) {
   Study s(4, "2=bad-checkpoint");
   EXPECT_EQ(s.run(), StudyEnd::finished);
@@ -362,48 +287,6 @@ TEST(RunStudy, TwoStudiesDoNotShareADirectory) {
   EXPECT_EQ(s.count("begin"), 3);
 }
 
-namespace {
-
-/// Starts the study of `s` as a process, kills it with SIGKILL once `begun` runs have begun, and finishes it
-/// here.
-void kill_and_finish(Study& s, int begun) {
-  std::vector<std::string> command{STUDY_PROCESS, s.out.string(), std::to_string(s.plan.study.realizations), "3"};
-  for (const std::string& word : s.program()) command.push_back(word);
-  {
-    executor::Process study({.arguments = command}, s.directory / "log", s.directory / "log");
-    wait_until([&] { return s.count("begin ") >= begun; });
-    ASSERT_FALSE(study.poll()) << content(s.directory / "log");
-    study.signal(SIGKILL);
-    wait_until([&] { return study.poll().has_value(); });
-    EXPECT_EQ(study.poll()->signal, SIGKILL);
-  }
-  EXPECT_EQ(s.run(), StudyEnd::finished);
-}
-
-}  // namespace
-
-TEST(RunStudy, SurvivesKill9) {
-  Study s(20), whole(20);
-  s.plan.study.noise_floor_replicates = whole.plan.study.noise_floor_replicates = 2;
-  s.plan.study.max_failed_share = whole.plan.study.max_failed_share = 0.1;
-  s.milliseconds = 15;
-  kill_and_finish(s, 10);
-  whole.run();
-  EXPECT_EQ(content(s.out / "study.json"), content(whole.out / "study.json"));
-  EXPECT_EQ(content(s.out / "realizations.csv"), content(whole.out / "realizations.csv"));
-  EXPECT_LE(s.most_ends(), 1);  // none that had ended was run again
-}
-
-TEST(RunStudy, AdoptsWhatItsOrphansFinish) {
-  Study s(12, "orphan");
-  s.plan.study.noise_floor_replicates = 2;
-  s.plan.study.max_failed_share = 0.1;
-  s.milliseconds = 300;  // much longer than the next study needs to begin
-  kill_and_finish(s, 6);
-  EXPECT_EQ(s.count("begin "), 14);  // workers outlived the study, and nothing at all was started twice
-  EXPECT_NE(s.text_of_notes().find("taken over"), std::string::npos);
-}
-
 TEST(RunStudy, GoesOnWhereTheFileSystemHasNoLocks) {
   Study s(5), whole(5);
   no_locks = true;
@@ -423,4 +306,40 @@ TEST(RunStudy, ADamagedResultIsRunAgain) {
   EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_EQ(s.count("begin 2 "), 2);
   EXPECT_EQ(s.count("begin "), 5);
+}
+
+TEST(RunStudy, ADamagedProfileIsMadeAgain) {
+  Study s(6);
+  s.run();
+  const std::string farthest = json::parse(content(s.out / "profiles" / "worst.json"))["realization"].dump();
+  ASSERT_NE(farthest, "0");
+  for (const auto& [profile, index] : {std::pair{"first", std::string("0")}, {"worst", farthest}}) {
+    const fs::path snapshots = s.out / "profiles" / (std::string(profile) + ".vtkhdf");
+    const std::string whole = content(snapshots), results = content(s.out / "realizations.csv");
+    for (const bool missing : {false, true}) {
+      const int before = s.count("begin ");
+      fs::remove(snapshots);
+      if (!missing) write(snapshots, "other than it was");
+      EXPECT_TRUE(is_damaged_profile({s.out}, profile));
+      EXPECT_EQ(s.run(), StudyEnd::finished);
+      EXPECT_EQ(content(snapshots), whole);
+      EXPECT_EQ(content(s.out / "realizations.csv"), results);
+      EXPECT_EQ(s.count("begin "), before + 1);
+      EXPECT_FALSE(is_damaged_profile({s.out}, profile));
+    }
+    EXPECT_EQ(s.count("begin " + index + " "), 3);
+  }
+  EXPECT_NE(s.text_of_notes().find("the kept profile of realization 0 is damaged; running it again"),
+            std::string::npos);
+}
+
+TEST(RunStudy, AProfileOfAnEarlierVersionIsLeftAlone) {  // without a hash
+  Study s(3);
+  s.run();
+  fs::remove(s.out / "profiles" / "first.json");
+  write(s.out / "profiles" / "worst.json", with_checksum({{"realization", 1}, {"influence_zone_m", 35.2}}));
+  write(s.out / "profiles" / "first.vtkhdf", "other");
+  const int before = s.count("begin ");
+  EXPECT_EQ(s.run(), StudyEnd::finished);
+  EXPECT_EQ(s.count("begin "), before);
 }
