@@ -66,10 +66,13 @@ void check_counts(const Model& model, Faults& faults) {
     faults.add("/particle_spacing_m", "leaves no particle: the slide's area, " + rounded(estimate.soil_area) +
                                           " m2, is less than one cell of " + rounded(model.dx * model.dx) + " m2");
   if (estimate.count(model.dx) <= static_cast<double>(model.max_particles)) return;
-  faults.add("/particle_spacing_m",
-             "makes about " + rounded(estimate.count(model.dx)) + " particles, more than max_particles, " +
-                 std::to_string(model.max_particles) + "; a spacing from " +
-                 rounded(estimate.spacing_for(static_cast<double>(model.max_particles))) + " m on fits");
+  const double fitting = estimate.spacing_for(static_cast<double>(model.max_particles));
+  const Box slide = bounding_box(model.slide);
+  const bool resolves = 5.0 * fitting <= std::min(slide.width(), slide.height());
+  faults.add("/particle_spacing_m", "makes about " + rounded(estimate.count(model.dx)) +
+                                        " particles, more than max_particles, " + std::to_string(model.max_particles) +
+                                        "; a spacing from " + rounded(fitting) + " m on fits" +
+                                        (resolves ? "" : ", but is too coarse for the slide: raise max_particles"));
 }
 
 /// Legal, but often two rows in the wrong order.

@@ -43,6 +43,15 @@ TEST(Checks, SuggestedSpacingFits) {
   EXPECT_FALSE(sound(with("/particle_spacing_m", 0.99 * spacing, with("/max_particles", 10'000))));
 }
 
+TEST(Checks, NoSpacingIsSuggestedThatLosesTheSlide) {
+  const auto faults = faults_of(with("/particle_spacing_m", 0.1, with("/max_particles", 100)));
+  ASSERT_EQ(faults.size(), 1u);
+  EXPECT_NE(faults[0].find("m on fits, but is too coarse for the slide: raise max_particles"), std::string::npos)
+      << faults[0];
+  EXPECT_EQ(faults_of(with("/particle_spacing_m", 0.01, with("/max_particles", 10'000)))[0].find("raise"),
+            std::string::npos);
+}
+
 TEST(Checks, WallLayersFillTheSupport) {
   const auto layers = [](double ratio, int n) {
     return with("/numerics/smoothing_ratio", ratio, with("/walls/layers", n));

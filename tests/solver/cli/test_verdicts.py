@@ -5,6 +5,7 @@ usage: test_verdicts.py TALUS SOURCE_DIR [Run] [Study]
 """
 import io
 import json
+import random
 import sys
 import unittest
 
@@ -115,6 +116,49 @@ class Run(Directory):
         self.assert_says("numerical_dissipation", "doubtful", "numerics.artificial_viscosity_jump=whole", case=path)
         quality, _ = self.verdict(case=path)
         self.assertNotIn("numerical_dissipation", [reason["check"] for reason in quality["reasons"]])
+
+    def column(self, width, height, angle):
+        """A column on a flat bed of 60 m, with a friction angle and no viscosity."""
+        return self.file("column", particle_spacing_m=0.1, terrain={"bed_m": [[0, 0], [60, 0]]}, time={"end_s": 8},
+                         slide={"outlines": [{"outline_m": [[0, 0], [width, 0], [width, height], [0, height]]}]},
+                         material={"density_kg_m3": 1850, "friction_angle_deg": angle})
+
+    def test_a_front_that_friction_cannot_reach_is_doubtful(self):
+        # A slab of 1 m by 4 m slides 30 m down a plane of 30 degrees onto a flat: four rows of particles, which thin out.
+        slab = [[2.598, 14.5], [6.062, 12.5], [6.562, 13.366], [3.098, 15.366]]
+        path = self.file("slab", particle_spacing_m=0.25, slide={"outlines": [{"outline_m": slab}]}, time={"end_s": 12},
+                         terrain={"bed_m": [[0, 16], [25.981, 1], [125.981, 1]]}, numerics={"sound_speed_m_s": 60},
+                         material={"density_kg_m3": 2000, "friction_angle_deg": 25})
+        quality = self.assert_says("beyond_energy_line", "doubtful", case=path)
+        self.assertIn("thin_flow", [reason["check"] for reason in quality["reasons"]])
+        # The energy line at 25 degrees from the upper corner meets the flat at x = 3.098 m + 14.366 m/tan(25 deg) = 33.9 m.
+        self.assertGreater(self.result["front_mass_99_m"], 33.9)
+
+    def test_soil_that_hardly_loses_energy_is_doubtful(self):
+        """A bed with survey noise of a tenth of a spacing, on which sheets of two rows of particles hop."""
+        draw = random.Random(7)
+        bed = [[round(0.04 * i, 3), round(max(0.0, 40.0 - 0.02 * i) + draw.gauss(0.0, 0.1), 3)] for i in range(5001)]
+        path = self.file("noisy", particle_spacing_m=1, terrain={"bed_m": bed}, time={"end_s": 25},
+                         slide={"outlines": [{"outline_m": [[2, 39.6], [42, 19.6], [42, 24.1], [2, 44.1]]}]},
+                         material={"density_kg_m3": 2000, "friction_angle_deg": 20})
+        quality = self.assert_says("too_little_friction", "doubtful", case=path)
+        self.assertIn("beyond_energy_line", [reason["check"] for reason in quality["reasons"]])
+
+    def test_a_front_of_single_particles_is_doubtful_without_a_viscosity(self):
+        column = self.column(1, 2, 15)
+        self.assert_says("separate_front", "doubtful", case=column)
+        self.assertGreater(self.result["front_mass_99_m"], self.result["front_connected_m"] + 0.5)
+        quality, _ = self.verdict("material.viscosity_Pa_s=100", case=column)
+        self.assertNotIn("separate_front", [reason["check"] for reason in quality["reasons"]])
+
+    def test_mass_that_the_placement_adds_is_doubtful(self):
+        column = self.column(1, 2, 25)
+        self.assert_says("mass_changed", "doubtful", "particle_placement=nodes", case=column)
+        self.assertIn("warning: /particle_placement the particles carry 15.5 % more mass", self.stderr)
+        quality, _ = self.verdict("particle_placement=whole_cells", case=column)
+        self.assertNotIn("mass_changed", [reason["check"] for reason in quality["reasons"]])
+        validate = talus("validate", column, "--set", "particle_placement=nodes")
+        self.assertIn("/particle_placement the particles carry 15.5 % more mass", validate.stderr)
 
     def test_soil_that_spills_over_an_end_wall_has_left(self):
         path = self.file("spill", particle_spacing_m=0.5, time={"end_s": 4},
