@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "case/outline.hpp"
 #include "case/overlay.hpp"
 #include "case/sections.hpp"
 #include "particles/geometry.hpp"
+#include "particles/ground.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/reach.hpp"
 #include "support/text.hpp"
@@ -66,10 +68,13 @@ void check_counts(const Model& model, Faults& faults) {
     faults.add("/particle_spacing_m", "leaves no particle: the slide's area, " + rounded(estimate.soil_area) +
                                           " m2, is less than one cell of " + rounded(model.dx * model.dx) + " m2");
   if (estimate.count(model.dx) <= static_cast<double>(model.max_particles)) return;
-  faults.add("/particle_spacing_m",
-             "makes about " + rounded(estimate.count(model.dx)) + " particles, more than max_particles, " +
-                 std::to_string(model.max_particles) + "; a spacing from " +
-                 rounded(estimate.spacing_for(static_cast<double>(model.max_particles))) + " m on fits");
+  const double fitting = estimate.spacing_for(static_cast<double>(model.max_particles));
+  const Box slide = bounding_box(model.slide);
+  const bool resolves = 5.0 * fitting <= std::min(slide.width(), slide.height());
+  faults.add("/particle_spacing_m", "makes about " + rounded(estimate.count(model.dx)) +
+                                        " particles, more than max_particles, " + std::to_string(model.max_particles) +
+                                        "; a spacing from " + rounded(fitting) + " m on fits" +
+                                        (resolves ? "" : ", but is too coarse for the slide: raise max_particles"));
 }
 
 /// Legal, but often two rows in the wrong order.
@@ -82,6 +87,28 @@ void warn_of_overhangs(const Terrain& terrain, std::vector<Fault>& warnings) {
                             ": rock hangs over there; if that is not meant, check the order of the vertices"});
     return;
   }
+}
+
+/// Least distance between the bed and points of the outlines, at most `step` apart [m].
+double gap_above_bed(const Model& model, double step) {
+  const Ground bed({{model.terrain.bed, model.terrain.closed}});
+  double least = std::numeric_limits<double>::infinity();
+  for (const SlidePart& part : model.slide) {
+    const Polyline outline{part.outline, true};
+    const auto points = static_cast<int>(std::ceil(outline.length() / step));
+    for (int k = 0; k < points; ++k)
+      least = std::min(least, std::abs(bed.nearest(outline.at(outline.length() * k / points)).distance));
+  }
+  return least;
+}
+
+/// Legal, but most often elevations from two surveys.
+void warn_of_a_slide_in_the_air(const Model& model, std::vector<Fault>& warnings) {
+  const double gap = gap_above_bed(model, model.dx);
+  if (gap > model.dx)
+    warnings.push_back({"/slide", "hangs " + rounded(gap) +
+                                      " m above the bed, onto which it falls before it slides; if that is not meant, "
+                                      "check the elevations of both"});
 }
 
 void warn_of_open_ends(const Model& model, std::vector<Fault>& warnings) {
@@ -179,6 +206,7 @@ std::vector<Fault> find_warnings(const Case& c) {
   warn_of_unlikely_values(model, warnings);
   if (!model.terrain.closed) warn_of_overhangs(model.terrain, warnings);
   if (!model.terrain.closed) warn_of_open_ends(model, warnings);
+  warn_of_a_slide_in_the_air(model, warnings);
   warn_of_thin_front(model, warnings);
   if (c.field) warn_of_unused_keys(*c.field, warnings);
   if (model.numerics.precision == Precision::full)

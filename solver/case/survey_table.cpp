@@ -204,7 +204,8 @@ std::string no_rows_message(const std::vector<Line>& lines) {
   const auto line =
       std::ranges::find_if(lines, [&](const Line& l) { return !l.comment && std::ranges::any_of(l.text, is_digit); });
   if (line == lines.end()) return message;
-  return message + "; line " + std::to_string(line->number) + " reads " + in_quotes(line->text);
+  return message + "; line " + std::to_string(line->number) + " reads " + in_quotes(line->text) +
+         (has_station(line->text) ? no_stations : "");
 }
 
 /// The two columns, or nothing and a fault.
@@ -251,6 +252,15 @@ std::string form_of(const Columns& columns, char separator, bool decimal_commas)
 }
 
 }  // namespace
+
+bool has_station(std::string_view text) {
+  const auto is_digit = [&](std::size_t k) {
+    return k < text.size() && std::isdigit(static_cast<unsigned char>(text[k])) != 0;
+  };
+  for (std::size_t k = text.find('+'); k != std::string_view::npos; k = text.find('+', k + 1))
+    if (k > 0 && is_digit(k - 1) && is_digit(k + 1)) return true;
+  return false;
+}
 
 void LineFaults::add(std::string_view kind, int line, const std::string& message) {
   const auto known = std::ranges::find(kinds_, kind, &Kind::name);

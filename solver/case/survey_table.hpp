@@ -30,6 +30,11 @@ class LineFaults {
   std::vector<Kind> kinds_;
 };
 
+/// Whether a text holds a station such as 1+125.00: digits, a plus sign and digits.
+bool has_station(std::string_view text);
+/// What to say of one, after its text.
+inline constexpr const char* no_stations = ", a station; the distance must be one number, in metres";
+
 /// A row and the cells of its two columns.
 struct SurveyRow {
   int line;  ///< of the file, counted from 1

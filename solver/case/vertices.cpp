@@ -67,7 +67,7 @@ std::optional<double> read_coordinate(const std::string& cell, bool elevation, i
   else if (x)
     found.add("range", line, shorten(cell) + " is out of range; " + coordinate.describe());
   else
-    found.add("number", line, in_quotes(cell) + " is not a number");
+    found.add("number", line, in_quotes(cell) + " is not a number" + (has_station(cell) ? no_stations : ""));
   return {};
 }
 

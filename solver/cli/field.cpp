@@ -69,6 +69,7 @@ Json summary(const FieldOnParticles& field, const RunIdentity& identity) {
   const FieldSummary& of = field.strength.summary;
   return {{"particles", field.position.size()},
           {"captured_variance", of.captured_variance},
+          {"cov_tan_phi", of.cov},
           {"terms", of.terms},
           {"friction_angle_deg", {{"mean", degrees(of.mean_phi)}, {"min", *lo}, {"max", *hi}}},
           {"realization", identity.realization ? Json(*identity.realization) : Json()},

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t format = 2;          // 2: with the sums of the energy balance
+constexpr std::int64_t format = 3;          // 2: with the sums of the energy balance; 3: and of the thickness
 constexpr std::size_t preamble_size = 512;  ///< HDF5 looks for its own beginning at 0, 512, 1024 ... bytes
 constexpr std::string_view magic = "talus checkpoint";
 

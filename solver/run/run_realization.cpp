@@ -10,6 +10,7 @@
 
 #include "io/checkpoint.hpp"
 #include "io/result_json.hpp"
+#include "run/dissipation.hpp"
 #include "run/recorder.hpp"
 #include "run/thread_choice.hpp"
 #include "run/warnings.hpp"
@@ -144,6 +145,8 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
   // With all coefficients zero, as in the median run, the field is uniform.
   if (std::ranges::any_of(soil.xi, [](double xi) { return xi != 0.0; }))
     facts.correlation_length = shortest_correlation(problem.field);
+  const Measures& fronts = outcome.result.measures;
+  if (lacks_rate_dependence(problem.model)) facts.separate_front = fronts.front_mass_99 - fronts.front_connected;
   outcome.result.quality = assess(facts);
   outcome.document = with_checksum(result_json(outcome.result, provenance));
   write_file_atomically(out.path() / "result.json", outcome.document);

@@ -17,6 +17,7 @@ constexpr double little_variance = 0.5;  ///< captured share of the variance tha
 /// The key of the case that a check concerns.
 std::string pointer_of(std::string_view check) {
   if (check == "few_particles_across") return "/particle_spacing_m";
+  if (check == "mass_changed") return "/particle_placement";
   return check == "short_correlation_length" ? "/random_field" : "/time/fixed_step_s";
 }
 
@@ -33,6 +34,8 @@ std::vector<Fault> warnings_before_run(const Case& c, const ParticlePlan& plan, 
   for (const SoilPoint& point : plan.soil) starts.push_back(point.x);
   RunFacts facts = facts_before_run(c.model, starts);
   facts.correlation_length = shortest_correlation(c.field);
+  const SlideMass mass = slide_mass(c.model, plan);
+  facts.mass_change = mass.filled / mass.outline - 1.0;
   std::vector<Fault> warnings;
   for (const QualityReason& reason : assess(facts).reasons)
     warnings.push_back({pointer_of(reason.check), reason.message});

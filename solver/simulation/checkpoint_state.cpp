@@ -47,6 +47,8 @@ CheckpointState Simulation::state() const {
                         peak_density_rise_};
   s.reals["energy"] = energy_account_.state();
   s.reals["energy"].push_back(contact_.taken());
+  const auto thickness = flow_thickness_.state();
+  s.reals["flow_thickness"].assign(thickness.begin(), thickness.end());
   s.integers["material"].assign(soil_.material.begin(), soil_.material.end());
   s.integers["id"].assign(soil_.id.begin(), soil_.id.end());
   s.integers["penetrated"].assign(contact_.lost_ids().begin(), contact_.lost_ids().end());
@@ -83,6 +85,9 @@ void Simulation::restore(const CheckpointState& state) {
   contact_.restore({penetrated.begin(), penetrated.end()}, energy.back());
   energy.pop_back();
   energy_account_.restore(energy);
+
+  const auto& thickness = array_of(state.reals, "flow_thickness", 3);
+  flow_thickness_.restore({thickness[0], thickness[1], thickness[2]});
 
   const auto& counters = array_of(state.integers, "counters", 3);
   if (counters[0] < 0 || counters[0] > static_cast<std::int64_t>(n)) refuse("more active particles than there are");

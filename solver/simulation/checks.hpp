@@ -20,6 +20,8 @@ constexpr double stable_cfl(Integrator integrator) { return integrator == Integr
 inline constexpr double rest_speed = 0.01;
 /// By how many spacings the front of a slide at rest may still advance [-].
 inline constexpr double rest_advance = 1.0;
+/// By how many spacings a front may lie ahead of another before its soil counts as thrown or separate [-].
+inline constexpr double thrown_ahead = 5.0;
 
 /// What the checks look at. The defaults are those of a run without fault; what is unset is not checked.
 struct RunFacts {
@@ -38,6 +40,15 @@ struct RunFacts {
   std::optional<double> run_on = {};     ///< by which the front may still advance on friction [m]
   std::optional<double> creep = {};  ///< of the front in as long again [m]; unset where rms_speed is above rest_speed
   std::optional<double> rows = {};   ///< particles across the slide at the start
+  /// By how much the front of 99 % of the mass lies ahead of the connected body, of soil without a rate-dependent
+  /// dissipation [m].
+  std::optional<double> separate_front = {};
+  std::optional<double> flow_rows = {};  ///< particles across the slide on its way, on average
+  double mass_change = 0.0;              ///< mass of the particles over density x area of the outlines, less 1 [-]
+  /// Smallest friction of any soil particle or wall [-]; unset: none, or gravity is not vertical.
+  std::optional<double> least_friction = {};
+  double beyond_energy_line = 0.0;  ///< share of the mass more than dx above the energy line of that friction [-]
+  double travel = 0.0;              ///< mean distance along x between the start of a particle and its end [m]
   std::optional<double> correlation_length = {};  ///< shortest, of a field that is not averaged over cells [m]
   std::optional<double> courant = {};             ///< of a fixed time step [-]
   std::optional<double> diffusion_number = {};    ///< of a fixed time step, nu dt/h^2; unset without a viscosity [-]

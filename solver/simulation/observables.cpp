@@ -8,15 +8,13 @@
 #include <numeric>
 
 #include "neighbours/cell_list.hpp"
+#include "simulation/checks.hpp"
 #include "simulation/thickness.hpp"
 #include "support/digest.hpp"
 #include "support/text.hpp"
 
 namespace talus {
 namespace {
-
-/// By how many spacings the farthest particle may lie ahead of the other fronts before it counts as thrown [-].
-constexpr double thrown_ahead = 5.0;
 
 /// Indices of the soil in order of id, so that sums and digests do not depend on how the particles are stored.
 std::vector<std::uint32_t> by_id(const Soil& soil) {

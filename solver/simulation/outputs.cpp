@@ -125,6 +125,28 @@ std::int64_t Simulation::at_open_end() const {
   return count;
 }
 
+SlideMass Simulation::mass() const {
+  return {total_mass(soil_), mass_of(model_.slide, model_.materials) + model_.left_out};
+}
+
+/// How far the soil went, and how much of it is above the energy line with what it still has of kinetic energy.
+void Simulation::add_friction_facts(RunFacts& f) const {
+  const double friction = std::min(least_friction(model_), std::ranges::min(soil_.tan_phi));
+  if (model_.g.x != 0.0 || friction <= 0.0) return;
+  const EnergyLine line = energy_line(model_, friction);
+  double mass = 0.0, beyond = 0.0, moment = 0.0;
+  for (std::size_t i = 0; i < soil_.size(); ++i) {
+    const Vec2 x = soil_.position(i);
+    const double head = x.y + norm2(soil_.velocity(i)) / (2.0 * norm(model_.g));
+    mass += soil_.m[i];
+    moment += soil_.m[i] * std::abs(x.x - starts_[soil_.id[i]].x);
+    if (head > line.height(x.x) + model_.dx) beyond += soil_.m[i];
+  }
+  f.least_friction = friction;
+  f.beyond_energy_line = beyond / mass;
+  f.travel = moment / mass;
+}
+
 RunFacts Simulation::facts() const {
   std::vector<Vec2> starts;
   for (std::size_t id = 0; id < soil_.size(); ++id) starts.push_back(starts_[static_cast<std::int32_t>(id)]);
@@ -139,6 +161,9 @@ RunFacts Simulation::facts() const {
   f.rms_speed = relative_speed();
   f.run_on = run_on();
   if (*f.rms_speed <= rest_speed) f.creep = creep();
+  f.mass_change = mass().filled / mass().outline - 1.0;
+  f.flow_rows = flow_thickness_.mean();
+  add_friction_facts(f);
   return f;
 }
 
@@ -159,7 +184,7 @@ RunResult Simulation::result() const {
   r.penetrated = contact_.lost();
   r.left_domain = static_cast<std::int64_t>(soil_.size() - soil_.n_active);
   r.at_rest = at_rest();
-  r.mass = {total_mass(soil_), mass_of(model_.slide, model_.materials) + model_.left_out};
+  r.mass = mass();
   r.digest = digest(soil_);
   r.backend = backend();
   r.simd = simd();

@@ -52,8 +52,12 @@ double lowest_reached(std::span<const Vec2> way, const EnergyLine& line) {
 
 double EnergyLine::height(double x) const { return std::min(left + slope * x, right - slope * x); }
 
-EnergyLine energy_line(const Model& model) {
-  EnergyLine line{std::tan(smallest_friction_angle(model)), -infinite, -infinite};
+double least_friction(const Model& model) { return std::tan(smallest_friction_angle(model)); }
+
+EnergyLine energy_line(const Model& model) { return energy_line(model, least_friction(model)); }
+
+EnergyLine energy_line(const Model& model, double slope) {
+  EnergyLine line{slope, -infinite, -infinite};
   for (const SlidePart& part : model.slide) {
     for (const Vec2& v : part.outline) {
       line.left = std::max(line.left, v.y - line.slope * v.x);

@@ -16,7 +16,12 @@ struct EnergyLine {
   double height(double x) const;
 };
 /// From the points of the slide that are the highest seen along the line. Pure; thread-safe.
+/// @param slope  tangent of the friction angle [-], >= 0
+EnergyLine energy_line(const Model& model, double slope);
 EnergyLine energy_line(const Model& model);
+
+/// Tangent of the smallest friction angle of materials and walls, 0 with free slip [-].
+double least_friction(const Model& model);
 
 /// Whether every column of the slide carries its own weight on cohesion alone, so that nothing moves: its unconfined
 /// compressive strength, 2 c cos(phi)/(1 - sin(phi)), exceeds the weight of the slide's full height (lower bound

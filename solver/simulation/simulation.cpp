@@ -21,6 +21,7 @@ bool departed(const Terrain& terrain, Vec2 x) {
 }
 
 constexpr std::int64_t observation_interval = 20;  ///< steps between two observations of rest and density
+constexpr std::int64_t thickness_interval = 100;   ///< the same of the thickness, which takes longer
 
 /// Adds up the times of parts of a run.
 StageTimes operator+(const StageTimes& a, const StageTimes& b) {
@@ -64,6 +65,7 @@ void Simulation::step(double until) {
     if (rest_rule_.active()) rest_rule_.observe(time_, rms_speed(soil_));
     peak_density_rise_ = std::max(peak_density_rise_, density_rise());
   }
+  if (steps_ % thickness_interval == 0) flow_thickness_.observe(soil_, model_.materials, model_.dx, time_);
   retire_departed(extrema);
   watch.lap(times_.update);
 }

@@ -8,6 +8,7 @@
 #include "simulation/checkpoint_state.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/energy_account.hpp"
+#include "simulation/flow_thickness.hpp"
 #include "simulation/frame.hpp"
 #include "simulation/ground_contact.hpp"
 #include "simulation/memory.hpp"
@@ -76,6 +77,8 @@ class Simulation {
   double creep() const;
   bool at_rest() const;
   std::int64_t at_open_end() const;
+  void add_friction_facts(RunFacts& f) const;
+  SlideMass mass() const;
 
   Model model_;
   Soil soil_;
@@ -85,6 +88,7 @@ class Simulation {
   StartingPositions starts_;
   GroundContact contact_;
   EnergyAccount energy_account_;
+  FlowThickness flow_thickness_;
   RestRule rest_rule_;
   StepBounds bounds_;
   double time_ = 0.0;               ///< [s]

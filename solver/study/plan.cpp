@@ -67,30 +67,33 @@ void write_plan(const fs::path& directory, const Plan& plan) {
 }
 
 void check_continues(const Plan& begun, const Plan& asked, const fs::path& directory, bool resume) {
-  std::vector<Fault> faults;
-  const auto differs = [&](const char* pointer, const std::string& what, const std::string& has,
-                           const std::string& wants) {
-    faults.push_back({pointer, directory.string() + " holds a study with " + what + " " + has + ", not " + wants +
-                                   "; choose another directory"});
+  const std::string elsewhere = "; choose another directory";
+  std::string faults;
+  const auto refuse = [&](const std::string& why) {
+    faults += (faults.empty() ? "" : "\n") + directory.string() + " holds " + why;
+  };
+  const auto differs = [&](const std::string& what, const std::string& has, const std::string& wants) {
+    refuse("a study with " + what + " " + has + ", not " + wants + elsewhere);
   };
   const auto name = [](const Plan& plan) { return std::string(sampling_names[static_cast<int>(plan.study.sampling)]); };
-  if (begun.seed != asked.seed)
-    differs("/study/seed", "the seed", std::to_string(begun.seed), std::to_string(asked.seed));
+  if (begun.seed != asked.seed) differs("study.seed", std::to_string(begun.seed), std::to_string(asked.seed));
   if (asked.of.extends(begun.of) && !resume)
-    faults.push_back({"/time/end_s", directory.string() + " holds this study up to t = " + to_text(begun.of.end) +
-                                         " s; --resume continues it to " + to_text(asked.of.end) + " s"});
+    refuse("this study up to t = " + to_text(begun.of.end) + " s; --resume continues it to " + to_text(asked.of.end) +
+           " s");
+  else if (begun.of.extends(asked.of))
+    refuse("this study up to t = " + to_text(begun.of.end) + " s, beyond time.end_s = " + to_text(asked.of.end) + " s" +
+           elsewhere);
   else if (begun.of.hash != asked.of.hash && !asked.of.extends(begun.of))
-    differs("", "the case hash", begun.of.hash, asked.of.hash + " (another case, or other settings)");
-  if (begun.version != asked.version) differs("", "results of version", begun.version, asked.version);
-  if (name(begun) != name(asked)) differs("/study/sampling", "the sampling", name(begun), name(asked));
+    differs("the case hash", begun.of.hash, asked.of.hash + " (another case, or other settings)");
+  if (begun.version != asked.version) differs("results of version", begun.version, asked.version);
+  if (name(begun) != name(asked)) differs("study.sampling", name(begun), name(asked));
   const std::int64_t has = begun.study.realizations, wants = asked.study.realizations;
   if (has != wants && asked.study.sampling == Sampling::latin_hypercube)
-    faults.push_back({"/study/realizations", directory.string() + " holds a Latin hypercube of " + std::to_string(has) +
-                                                 " realizations, which cannot become one of " + std::to_string(wants) +
-                                                 "; choose another directory"});
+    refuse("a Latin hypercube of " + std::to_string(has) + " realizations, which cannot become one of " +
+           std::to_string(wants) + elsewhere);
   else if (wants < has)
-    differs("/study/realizations", "more planned realizations,", std::to_string(has), std::to_string(wants));
-  if (!faults.empty()) throw ConfigError(std::move(faults));
+    differs("more planned realizations,", std::to_string(has), std::to_string(wants));
+  if (!faults.empty()) throw IoError(faults);
 }
 
 }  // namespace talus

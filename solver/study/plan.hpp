@@ -45,7 +45,7 @@ void write_plan(const std::filesystem::path& directory, const Plan& plan);
 
 /// Refuses to let `asked` go on where `begun` was begun, unless it is the same study or a longer one: of more
 /// realizations or, with `resume`, of a later end.
-/// @throws ConfigError naming every difference that forbids it
+/// @throws IoError naming every difference that forbids it
 void check_continues(const Plan& begun, const Plan& asked, const std::filesystem::path& directory, bool resume);
 
 }  // namespace talus

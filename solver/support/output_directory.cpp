@@ -84,6 +84,9 @@ OutputDirectory::OutputDirectory(fs::path path, OutputKind kind, const CaseIdent
       if (extends && old->finished && !resume)
         throw IoError(path_.string() + " holds this " + name(kind) + " up to t = " + to_text(old->of.end) +
                       " s; --resume continues it to " + to_text(of.end) + " s");
+      if (old->of.extends(of))
+        refuse(path_, std::string("it holds this ") + name(kind) + " up to t = " + to_text(old->of.end) +
+                          " s, beyond time.end_s = " + to_text(of.end) + " s");
       if (old->of.hash != of.hash && !extends)
         refuse(path_, std::string("it holds a ") + name(kind) + " of another case (or of other settings)");
       if (old->finished && !resume) refuse(path_, std::string("it holds a finished ") + name(kind));

@@ -85,6 +85,10 @@ TEST(ReadCsv, HasOneFaultForAllLinesOfAKind) {
             "f.csv:2: \"a\" is not a number (and 2 more lines)\n"
             "f.csv:5: 1e9 is out of range; unit m, allowed >= -1e+08 and <= 1e+08");
   EXPECT_EQ(complaint("0,1\ninf,2\n"), "f.csv:2: \"inf\" is not a number");
+  EXPECT_EQ(
+      complaint("no,station,z\n1,0+00,1\n2,0+12.5,3\n"),
+      "f.csv:2: \"0+00\" is not a number, a station; the distance must be one number, in metres (and 1 more line)");
+  EXPECT_EQ(complaint("0,1\n1e+3x,3\n"), "f.csv:2: \"1e+3x\" is not a number");
   EXPECT_EQ(complaint("0,1\n2,3\nx,y\n"), "f.csv:3: \"x\" is not a number") << "a header comes before the numbers";
   EXPECT_EQ(complaint("0,a\n1,2\n3,4\n"), "f.csv:1: \"a\" is not a number") << "a row with one number is no header";
   EXPECT_EQ(complaint("0,1\n\"2,3\n4,5\n"), "f.csv:2: has a quotation mark that is not closed");
@@ -94,10 +98,11 @@ TEST(ReadCsv, NamesTheFirstLineWhereNoRowHasTwoNumbers) {
   const std::string none =
       "f.csv: has no row of two numbers, distance and elevation in metres, separated by comma, semicolon, tab or "
       "blanks";
+  const std::string station = ", a station; the distance must be one number, in metres";
   EXPECT_EQ(complaint("a,b\n"), none);
   EXPECT_EQ(complaint(""), none);
   EXPECT_EQ(complaint("x|y\n0|20\n10|15\n"), none + "; line 2 reads \"0|20\"");
-  EXPECT_EQ(complaint("# 2021\nstation,elevation\n0+000.00,20\n"), none + "; line 3 reads \"0+000.00,20\"");
+  EXPECT_EQ(complaint("# 2021\nstation,elevation\n0+000.00,20\n"), none + "; line 3 reads \"0+000.00,20\"" + station);
 }
 
 TEST(ReadCsv, RefusesFeetHoweverTheyAreNamed) {

@@ -335,7 +335,7 @@ class Run(Directory):
         self.assertEqual((len(shots), shots[0], shots[2:]), (4, 0.0, [1.0, 3.0]))
         done = talus("run", SLOPE, *COARSE, *ends(1), "--out", out, "--resume")
         self.assertEqual(done.returncode, 5)
-        self.assertIn("another case", done.stderr)
+        self.assertIn("holds this run up to t = 3 s, beyond time.end_s = 1 s", done.stderr)
 
     def test_a_run_at_rest_has_nothing_to_continue(self):
         rest = ["--set", "time.stop_at_rest=true", "--set", "particle_spacing_m=1", "--set", "time.end_s=60"]
@@ -414,7 +414,7 @@ class Study(Directory):
         self.assertEqual(self.study("a", 3, "--no-figures").returncode, 0)
         self.assertFalse(any(load(p)["at_rest"] for p in (self.dir / "a/runs").iterdir()))
         done = self.study("a", 3, *later)
-        self.assertEqual(done.returncode, 3)
+        self.assertEqual(done.returncode, 5)
         self.assertIn("up to t = 3 s; --resume continues it to 4 s", done.stderr)
         done = self.study("a", 3, *later, "--resume")
         self.assertEqual(done.returncode, 0, done.stderr)

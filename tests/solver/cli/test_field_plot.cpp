@@ -52,6 +52,8 @@ TEST(FieldVerb, CsvHoldsEveryParticleAndTheSummaryAgrees) {
   }
   EXPECT_EQ(summary["particles"], 4141);
   EXPECT_EQ(summary["terms"], 5);
+  const double captured = summary["captured_variance"];
+  EXPECT_NEAR(summary["cov_tan_phi"], std::sqrt(std::expm1(captured * 0.2289 * 0.2289)), 1e-12);
   EXPECT_EQ(summary["realization"], 3);
   EXPECT_EQ(summary["seed"], 42);
   EXPECT_EQ(summary["xi"].size(), 5u);

@@ -65,7 +65,7 @@ class Ground(Directory):
         free = self.run_case(self.without("thin-wall.json", bed_m=[v for v in wall if v[0] < face - 1 or v[0] > face + 1]))
         self.assertGreater(free["influence_zone_m"], face + 1)
         reasons = {reason["check"] for reason in free["quality"]["reasons"]}
-        self.assertEqual(reasons, set(), "no false alarm of the ground")
+        self.assertEqual(reasons, {"thin_flow"}, "2.5 particles thick, and no false alarm of the ground")
 
     def test_the_noise_of_a_survey_does_not_move_the_front(self):
         """A plane that runs into a flat, 5,001 vertices, noise up to 0.2 spacings: the front of the smooth bed.

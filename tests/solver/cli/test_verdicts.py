@@ -116,6 +116,49 @@ class Run(Directory):
         quality, _ = self.verdict(case=path)
         self.assertNotIn("numerical_dissipation", [reason["check"] for reason in quality["reasons"]])
 
+    def column(self, width, height, angle):
+        """A column on a flat bed of 60 m, with a friction angle and no viscosity."""
+        return self.file("column", particle_spacing_m=0.1, terrain={"bed_m": [[0, 0], [60, 0]]}, time={"end_s": 8},
+                         slide={"outlines": [{"outline_m": [[0, 0], [width, 0], [width, height], [0, height]]}]},
+                         material={"density_kg_m3": 1850, "friction_angle_deg": angle})
+
+    def test_a_front_that_friction_cannot_reach_is_doubtful(self):
+        # The energy line of the column meets the bed at 1 m + 2 m/tan(10 deg) = 12.3 m; its tip is pushed beyond.
+        quality = self.assert_says("beyond_energy_line", "doubtful", case=self.column(1, 2, 10))
+        self.assertGreater(self.result["front_mass_99_m"], 12.3)
+        self.assertEqual(self.result["mass_kg_m"]["filled"], 3700)
+        self.assertEqual({reason["check"] for reason in quality["reasons"]} - {"still_moving", "front_still_moving"},
+                         {"beyond_energy_line", "separate_front"})
+
+    def test_soil_that_hardly_loses_energy_says_so(self):
+        quality, _ = self.verdict("numerics.sound_speed_m_s=10", "particle_spacing_m=0.8")
+        self.assertIn("too_little_friction", [reason["check"] for reason in quality["reasons"]])
+        self.assertIn("beyond_energy_line", [reason["check"] for reason in quality["reasons"]])
+
+    def test_a_flow_of_two_rows_is_doubtful(self):
+        # A slab of 1 m by 4 m slides 30 m down a plane of 30 degrees onto a flat: four rows, which thin out to one.
+        slab = [[2.598, 14.5], [6.062, 12.5], [6.562, 13.366], [3.098, 15.366]]
+        path = self.file("slab", particle_spacing_m=0.25, slide={"outlines": [{"outline_m": slab}]}, time={"end_s": 12},
+                         terrain={"bed_m": [[0, 16], [25.981, 1], [125.981, 1]]}, numerics={"sound_speed_m_s": 60},
+                         material={"density_kg_m3": 2000, "friction_angle_deg": 25})
+        self.assert_says("thin_flow", "doubtful", case=path)
+
+    def test_a_front_of_single_particles_is_doubtful_without_a_viscosity(self):
+        column = self.column(1, 2, 15)
+        self.assert_says("separate_front", "doubtful", case=column)
+        self.assertGreater(self.result["front_mass_99_m"], self.result["front_connected_m"] + 0.5)
+        quality, _ = self.verdict("material.viscosity_Pa_s=100", case=column)
+        self.assertNotIn("separate_front", [reason["check"] for reason in quality["reasons"]])
+
+    def test_mass_that_the_placement_adds_is_doubtful(self):
+        column = self.column(1, 2, 25)
+        self.assert_says("mass_changed", "doubtful", "particle_placement=nodes", case=column)
+        self.assertIn("warning: /particle_placement the particles carry 15.5 % more mass", self.stderr)
+        quality, _ = self.verdict("particle_placement=whole_cells", case=column)
+        self.assertNotIn("mass_changed", [reason["check"] for reason in quality["reasons"]])
+        validate = talus("validate", column, "--set", "particle_placement=nodes")
+        self.assertIn("/particle_placement the particles carry 15.5 % more mass", validate.stderr)
+
     def test_soil_that_spills_over_an_end_wall_has_left(self):
         path = self.file("spill", particle_spacing_m=0.5, time={"end_s": 4},
                          terrain={"bed_m": [[0, 20], [20, 0], [24, 0]], "right_end": "wall", "wall_top_m": 20.5},

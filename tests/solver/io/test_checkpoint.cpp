@@ -146,13 +146,13 @@ TEST(Checkpoint, ThatIsNoneIsRefused) {
 TEST(Checkpoint, OfALaterFormatIsRefused) {
   const TemporaryDirectory dir;
   const hdf5::Id file = hdf5::create_in_memory();
-  hdf5::write_attribute<std::int64_t>(file, "format", 3);
+  hdf5::write_attribute<std::int64_t>(file, "format", 9);
   const std::string body = hdf5::image(file);
   char preamble[512] = {};
   std::snprintf(preamble, sizeof preamble, "talus checkpoint\nbytes %zu\nfnv1a64 %016llx\n", body.size(),
                 static_cast<unsigned long long>(fnv1a64(body)));
   write_file_atomically(dir / "c", std::string(preamble, sizeof preamble) + body);
-  EXPECT_NE(io_error([&] { read_checkpoint(dir / "c", header); }).find("format 3"), std::string::npos);
+  EXPECT_NE(io_error([&] { read_checkpoint(dir / "c", header); }).find("format 9"), std::string::npos);
 }
 
 TEST(Checkpoint, LeavesTheOldOneWhenTheNewOneDoesNotFit) {

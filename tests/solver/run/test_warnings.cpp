@@ -31,6 +31,11 @@ TEST(WarningsBeforeRun, ASpacingThatLeavesFewRows) {
   EXPECT_EQ(pointers({"particle_spacing_m=1.2"}), "/particle_spacing_m ");
 }
 
+TEST(WarningsBeforeRun, AMassThatIsNotThatOfTheOutlines) {
+  EXPECT_EQ(pointers({"particle_placement=nodes", "particle_spacing_m=0.1"}), "");
+  EXPECT_EQ(pointers({"particle_placement=nodes"}), "/particle_placement ");
+}
+
 TEST(WarningsBeforeRun, ACorrelationLengthBelowTheSpacing) {
   const std::vector<std::string> shorter{"random_field.correlation_length_m=0.49", "random_field.terms=5000"};
   EXPECT_EQ(pointers(shorter), "/random_field ");

@@ -46,6 +46,21 @@ const std::vector<Row> rows{
        f.energy.kinetic -= 1000.0 * x;
      },
      "10.1 % of the energy went into artificial viscosity and density diffusion"},
+    {"beyond_energy_line", 0.01, Verdict::doubtful,
+     [](RunFacts& f, double x) {
+       f.least_friction = 0.5;
+       f.beyond_energy_line = x;
+     },
+     "1.01 % of the soil ended more than a spacing above the energy line at 26.6 degrees"},
+    {"too_little_friction", 0.95, Verdict::doubtful,
+     [](RunFacts& f, double x) {
+       f.least_friction = 0.5;
+       f.travel = 2.0;
+       f.weight = 800.0;  // friction takes 0.5 * 800 * 2 J/m
+       f.energy.friction = 800.0 * x;
+       f.energy.kinetic = 1000.0 - f.energy.friction;
+     },
+     "94 % of the energy that friction at 26.6 degrees", true},
     {"mach_number", 0.2, Verdict::doubtful, [](RunFacts& f, double x) { f.mach = x; },
      "0.202 times the speed of sound"},
     {"mach_number", 0.5, Verdict::invalid, [](RunFacts& f, double x) { f.mach = x; }, "0.505 times"},
@@ -59,6 +74,14 @@ const std::vector<Row> rows{
      "at t = 9 s: at its speed it would advance 0.505 m in as long again"},
     {"few_particles_across", 5.0, Verdict::doubtful, [](RunFacts& f, double x) { f.rows = x; }, "4.95 particles thick",
      true},
+    {"thin_flow", 3.0, Verdict::doubtful, [](RunFacts& f, double x) { f.flow_rows = x; },
+     "2.97 particles thick on average", true},
+    {"separate_front", 5.0, Verdict::doubtful, [](RunFacts& f, double x) { f.separate_front = 0.5 * x; },
+     "2.52 m ahead of the connected body"},
+    {"mass_changed", 0.05, Verdict::doubtful, [](RunFacts& f, double x) { f.mass_change = x; },
+     "carry 5.05 % more mass"},
+    {"mass_changed", 0.05, Verdict::doubtful, [](RunFacts& f, double x) { f.mass_change = -x; },
+     "carry 5.05 % less mass"},
     {"short_correlation_length", 1.0, Verdict::doubtful, [](RunFacts& f, double x) { f.correlation_length = 0.5 * x; },
      "0.495 m is below the particle spacing of 0.5 m", true},
     {"unstable_time_step", 1.0, Verdict::doubtful,
@@ -170,6 +193,16 @@ TEST(Checks, ASlideAtRestIsMeasuredByAFallOfOneSpacing) {
   f.energy.kinetic = 0.009 * 5e3;
   EXPECT_EQ(assess(f).verdict, Verdict::sound);
   f.energy.kinetic = 0.011 * 5e3;
+  EXPECT_EQ(assess(f).verdict, Verdict::doubtful);
+}
+
+TEST(Checks, FrictionIsNotMissedInASlideThatHardlyMoved) {
+  RunFacts f = facts();
+  f.least_friction = 0.5;
+  f.weight = 1e4;
+  f.travel = 0.99 * f.dx;
+  EXPECT_EQ(assess(f).verdict, Verdict::sound);
+  f.travel = 1.01 * f.dx;
   EXPECT_EQ(assess(f).verdict, Verdict::doubtful);
 }
 

@@ -96,10 +96,10 @@ TEST(RunStudy, AnotherStudyIsRefused) {
   Study s(5);
   s.run();
   s.plan.seed = 43;
-  EXPECT_THROW(s.run(), ConfigError);
+  EXPECT_THROW(s.run(), IoError);
   s.plan.seed = 42;
   s.plan.of.hash = "fedcba9876543210";
-  EXPECT_THROW(s.run(), ConfigError);
+  EXPECT_THROW(s.run(), IoError);
 }
 
 TEST(RunStudy, FailuresAreRecordedAndStayInTheDenominator) {
