@@ -188,7 +188,10 @@ Answer results(Exchange& exchange) {
   const Json asked = Json::parse(job.inputs);
   const auto outputs = asked.at("outputs").get<std::vector<std::string>>();
   const bool raw = asked.value("raw", false);
-  if (job.process == "echo") return results_answer(echo_results(asked.at("inputs"), outputs), raw, exchange.request);
+  if (job.process == "echo") {
+    const Json values = Json::parse(exchange.service.store.echo_inputs(job.number));
+    return results_answer(echo_results(values, outputs), raw, exchange.request);
+  }
   Json values = Json::object();
   for (const std::string& output : outputs) {
     if (output == "summary") values[output] = exchange.service.jobs.summary(job);

@@ -208,8 +208,9 @@ void Jobs::check_size(double particles, double steps, std::int64_t realizations,
   refuse_if_any(faults, reason::quota, "the job exceeds a quota");
 }
 
-std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response, Milliseconds created) {
-  std::optional<Job> recorded = store_.create(job, response, created);
+std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response, Milliseconds created,
+                                const std::optional<std::string>& echo_inputs) {
+  std::optional<Job> recorded = store_.create(job, response, created, echo_inputs);
   if (recorded) scheduler_.wake();
   return recorded;
 }
@@ -252,16 +253,29 @@ std::optional<Job> Jobs::submit_study(const Submission& submission, const Store:
 
 std::optional<Job> Jobs::submit_echo(const Submission& submission, const Store::Response& response) {
   check_queue(submission.subject);
-  const Json kept = {{"outputs", submission.outputs},
-                     {"raw", submission.raw},
-                     {"pause", submission.inputs.value("pause", 0.0)},
-                     {"inputs", submission.inputs}};
+  const Json kept = {
+      {"outputs", submission.outputs}, {"raw", submission.raw}, {"pause", submission.inputs.value("pause", 0.0)}};
+  const std::string values = dump(submission.inputs);
+  check_echo(submission.subject, values.size());
   return record({.id = random_hex(DataDirectory::id_bytes),
                  .process = "echo",
                  .subject = submission.subject,
                  .title = "echo",
                  .inputs = dump(kept)},
-                response, system_now());
+                response, system_now(), values);
+}
+
+void Jobs::check_echo(const std::string& subject, std::size_t bytes) const {
+  const auto check = [&](std::int64_t kept, std::uint64_t most, const char* whose) {
+    if (static_cast<std::uint64_t>(kept) + bytes > most)
+      throw Refusal(reason::queue_full,
+                    std::string("echo jobs ") + whose + " keep " + std::to_string(kept >> 20) +
+                        " MiB of inputs; at most " + std::to_string(most >> 20) +
+                        " MiB may be kept: delete some of them",
+                    {}, 60);
+  };
+  check(store_.echo_bytes({}), config_.quotas.echo_bytes, "of all");
+  check(store_.echo_bytes(subject), config_.quotas.echo_bytes_of_one, "of yours");
 }
 
 void Jobs::dismiss(const Job& job) {

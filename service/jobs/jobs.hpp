@@ -56,7 +56,10 @@ class Jobs {
   /// @param pointer  of every fault; empty: that of the input concerned
   void check_size(double particles, double steps, std::int64_t realizations, const std::string& pointer = "") const;
   void check_queue(const std::string& subject) const;
-  std::optional<Job> record(const NewJob& job, const Store::Response& response, Milliseconds created);
+  /// @param bytes  of the inputs of one more echo job
+  void check_echo(const std::string& subject, std::size_t bytes) const;
+  std::optional<Job> record(const NewJob& job, const Store::Response& response, Milliseconds created,
+                            const std::optional<std::string>& echo_inputs = {});
   /// `talus ARGUMENTS`, for at most `limit`. @throws Refusal where it cannot start, takes longer, or cannot read or
   /// write
   CommandOutput run_command(std::vector<std::string> arguments, std::chrono::seconds limit);

@@ -81,6 +81,8 @@ class Scheduler {
   void note_pending_reasons();
   void run_echo();
   void remove_dismissed();
+  void shrink_queue();
+  std::chrono::milliseconds until_next_tick() const;
   void free_space();
   bool room_on_disk() const;
 
@@ -93,10 +95,11 @@ class Scheduler {
 
   std::set<StudyNumber> pending_;  ///< jobs with a recorded reason why none of their runs is under way
   Steady::time_point next_renewal_{}, next_reasons_{}, next_removal_{};
-  bool read_queue_ = true;  ///< the queue may hold something to do
-  bool echo_waiting_ = false;
-  bool in_trouble_ = false;  ///< the last tick failed, and the log says so
-  bool removing_ = true;     ///< directories of dismissed jobs may be left
+  bool read_queue_ = true;                                    ///< the queue may hold something to do
+  Steady::time_point next_echo_ = Steady::time_point::max();  ///< when an echo job may be due; max: none waits
+  bool in_trouble_ = false;                                   ///< the last tick failed, and the log says so
+  bool removing_ = true;                                      ///< directories of dismissed jobs may be left
+  bool shrinking_ = true;  ///< the database may hold pages that dismissed jobs have left
 
   std::mutex mutex_;
   std::condition_variable wake_;
