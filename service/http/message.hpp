@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct Incoming {
   std::multimap<std::string, std::string> query;
   std::map<std::string, std::string> headers;  ///< names in lower case
   std::string body;
+  /// Stop is requested when nobody waits for the answer any more: the client is gone, the time for the request is over,
+  /// or talusd stops. Whatever works for this request asks for it and then throws or returns at once.
+  std::stop_token stop = {};
 
   std::string header(const std::string& name) const {
     const auto at = headers.find(name);
