@@ -13,6 +13,8 @@
 namespace talus::service {
 namespace {
 
+constexpr std::size_t small_body = std::size_t{64} << 10;
+
 std::vector<std::string> segments_of(const std::string& path) {
   std::vector<std::string> all = split(path.substr(std::min<std::size_t>(1, path.size())), '/');
   if (all.size() > 1 && all.back().empty()) all.pop_back();  // "/jobs/" is "/jobs"
@@ -58,6 +60,9 @@ Answer routed(Exchange& exchange, const Routes& routes) {
   if (found.route->role > exchange.role)
     throw Refusal(reason::forbidden, "this token has the role read; submitting needs a token with the role submit");
   exchange.captured = std::move(found.captured);
+  if (request.body.size() > small_body)
+    exchange.document = std::make_shared<const Shares::Share>(exchange.service.documents.take(
+        exchange.caller(), static_cast<std::int64_t>(request.body.size()), std::chrono::seconds(10)));
   return found.route->handler(exchange);
 }
 

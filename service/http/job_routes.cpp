@@ -64,7 +64,7 @@ Submission read_submission(const Exchange& exchange, const std::vector<std::stri
     throw Refusal(reason::unsupported_media_type, "send the body as Content-Type: application/json");
   const Json body = parse_body(incoming.body);
   Faults faults;
-  Submission submission{.subject = exchange.subject};
+  Submission submission{.caller = exchange.caller()};
   if (!body.is_object()) throw Refusal(reason::bad_request, "the request body is invalid", {{"", "must be an object"}});
   if (body.contains("inputs") && !body.at("inputs").is_object())
     faults.add("/inputs", "must be an object");
@@ -94,12 +94,12 @@ Answer submit(Exchange& exchange, Submit submit_job, const Submission& submissio
   return answer;
 }
 
-void wait(double seconds, Service& service) {
+void wait(double seconds, const Exchange& exchange) {
   if (seconds <= 0.0) return;
   using Clock = std::chrono::steady_clock;
-  const WaitingRequest waiting(service, "send Prefer: respond-async");
+  const WaitingRequest waiting(exchange.service, "send Prefer: respond-async");
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  while (Clock::now() < end && !service.stopping())
+  while (Clock::now() < end && !exchange.service.stopping() && !exchange.request.stop.stop_requested())
     std::this_thread::sleep_for(
         std::min<std::chrono::duration<double>>(std::chrono::milliseconds(50), end - Clock::now()));
 }
@@ -108,8 +108,12 @@ Answer echo(Exchange& exchange) {
   Submission submission = read_submission(exchange, {"s", "x"});
   submission.inputs = read_echo_inputs(submission.inputs);
   if (prefers_async(exchange.request)) return submit(exchange, &Jobs::submit_echo, submission);
-  wait(submission.inputs.value("pause", 0.0), exchange.service);
-  return results_answer(echo_results(submission.inputs, submission.outputs), submission.raw, exchange.request);
+  const double pause = submission.inputs.value("pause", 0.0);
+  Answer answer = results_answer(echo_results(submission.inputs, submission.outputs), submission.raw, exchange.request);
+  submission = {};
+  exchange.document.reset();  // only the answer is in memory while it waits
+  wait(pause, exchange);
+  return answer;
 }
 
 Answer execute(Exchange& exchange) {
@@ -188,7 +192,10 @@ Answer results(Exchange& exchange) {
   const Json asked = Json::parse(job.inputs);
   const auto outputs = asked.at("outputs").get<std::vector<std::string>>();
   const bool raw = asked.value("raw", false);
-  if (job.process == "echo") return results_answer(echo_results(asked.at("inputs"), outputs), raw, exchange.request);
+  if (job.process == "echo") {
+    const Json values = Json::parse(exchange.service.store.echo_inputs(job.number));
+    return results_answer(echo_results(values, outputs), raw, exchange.request);
+  }
   Json values = Json::object();
   for (const std::string& output : outputs) {
     if (output == "summary") values[output] = exchange.service.jobs.summary(job);

@@ -4,11 +4,14 @@
 #include <exception>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "base/json.hpp"
+#include "base/shares.hpp"
 
 namespace talus::service {
 
@@ -19,6 +22,9 @@ struct Incoming {
   std::multimap<std::string, std::string> query;
   std::map<std::string, std::string> headers;  ///< names in lower case
   std::string body;
+  /// Stop is requested when nobody waits for the answer any more: the client is gone, the time for the request is over,
+  /// or talusd stops. Whatever works for this request asks for it and then throws or returns at once.
+  std::stop_token stop = {};
 
   std::string header(const std::string& name) const {
     const auto at = headers.find(name);
@@ -52,7 +58,10 @@ struct Exchange {
   std::vector<std::string> captured = {};  ///< path segments that match the {} of the route
   std::string subject = "local";
   Role role = Role::submit;
-  std::string base = {};  ///< "http://127.0.0.1:8080": before the path of absolute links
+  std::string base = {};                               ///< "http://127.0.0.1:8080": before the path of absolute links
+  std::shared_ptr<const Shares::Share> document = {};  ///< of the memory for what is made of a large body
+
+  Caller caller() const { return {.subject = subject, .stop = request.stop}; }
 };
 
 inline Answer json_answer(const Json& body, int status = 200) { return {.status = status, .body = dump(body) + "\n"}; }

@@ -150,13 +150,14 @@ bool wants_svg(const Incoming& request) {
 }
 
 /// A file that `make` makes of one run, as SVG or JSON.
-Answer picture(Exchange& exchange, std::string (Jobs::*make)(const Job&, std::int64_t, bool), bool needs_result) {
+Answer picture(Exchange& exchange, std::string (Jobs::*make)(const Job&, std::int64_t, bool, const Caller&),
+               bool needs_result) {
   const Job job = study_of(exchange);
   const Run run = run_of(exchange, job);
   const bool svg = wants_svg(exchange.request);
   if (needs_result && !run.result) throw Refusal(reason::result_not_ready, "this realization has no result yet");
   return {.type = svg ? "image/svg+xml" : "application/json",
-          .body = (exchange.service.jobs.*make)(job, run.key.index, svg)};
+          .body = (exchange.service.jobs.*make)(job, run.key.index, svg, exchange.caller())};
 }
 
 Answer field(Exchange& exchange) { return picture(exchange, &Jobs::field, false); }

@@ -16,7 +16,10 @@ struct Service {
   Jobs& jobs;
   Scheduler& scheduler;
   std::function<bool()> stopping;
-  std::atomic<int> streams{0};                         ///< waiting requests, see WaitingRequest
+  std::atomic<int> streams{0};  ///< waiting requests, see WaitingRequest
+  /// Bytes of bodies whose documents are in memory; a document may take more than ten times as much.
+  Shares documents{"requests with large bodies", 2 * static_cast<std::int64_t>(config.body_bytes),
+                   static_cast<std::int64_t>(config.body_bytes), config.http_threads / 4};
   std::atomic<std::int64_t> requests{0}, failures{0};  ///< all answered requests; those with 5xx
 };
 

@@ -2,8 +2,9 @@
 // quantification. A model is a case in --models; its input is the coefficients of its random field [xi_1..xi_M] and, if
 // config.parameters names some, a second vector of their values; its output is the five measures of the front.
 //
-// The protocol prescribes the order of the checks: model, feature, inputs. Errors are
-// {"error": {"type", "message"}} with status 400.
+// The protocol prescribes the order of the checks: model, feature, inputs. Errors are {"error": {"type", "message"}},
+// with status 400 where the request is wrong; InvalidOutput with 500 where the run failed, and with 503, 504 or 507
+// where it could not be carried out now. Evaluations wait for one another; one ends when its client leaves.
 
 #include <algorithm>
 
@@ -50,7 +51,7 @@ Json model_of(const Json& body, const Config& config) {
   const std::vector<std::string> known = models(config);
   if (std::find(known.begin(), known.end(), name) == known.end())
     throw ProtocolError{"ModelNotFound", "Model '" + name + "' is not served here"};
-  return Json::parse(find_file(config.models / (name + ".json"), max_case_bytes).value_or("{}"));
+  return read_json(config.models / (name + ".json"), max_case_bytes);
 }
 
 /// The parameters that config names.
@@ -75,16 +76,15 @@ std::vector<const Parameter*> wanted(const Json& body) {
 }
 
 /// The sizes of the input vectors.
-Json sizes(const Json& body, const Json& document, Jobs& jobs) {
-  Json all = {jobs.field_terms(document)};
+Json sizes(const Exchange& exchange, const Json& body, const Json& document) {
+  Json all = {exchange.service.jobs.field_terms(document, exchange.caller())};
   if (const std::size_t named = wanted(body).size(); named > 0) all.push_back(named);
   return all;
 }
 
 Json evaluate(const Exchange& exchange, const Json& body, const Json& model) {
-  Jobs& jobs = exchange.service.jobs;
   Json document = model;
-  const auto expected = sizes(body, document, jobs).get<std::vector<std::size_t>>();
+  const auto expected = sizes(exchange, body, document).get<std::vector<std::size_t>>();
   if (!body.contains("input") || !body.at("input").is_array()) invalid("input must be an array of arrays of numbers");
   const Json& input = body.at("input");
   if (input.size() != expected.size())
@@ -100,7 +100,7 @@ Json evaluate(const Exchange& exchange, const Json& body, const Json& model) {
   const std::vector<const Parameter*> names = wanted(body);
   for (std::size_t i = 0; i < names.size(); ++i) document[Json::json_pointer(names[i]->pointer)] = input[1][i];
   document.erase("study");
-  const Json result = jobs.evaluate(document);
+  const Json result = exchange.service.jobs.evaluate(document, exchange.caller());
   Json front = Json::array();
   for (const Measure& measure : measure_table)
     if (!measure.optional) front.push_back(result.at(measure.key));
@@ -109,6 +109,14 @@ Json evaluate(const Exchange& exchange, const Json& body, const Json& model) {
 
 Answer error_answer(const ProtocolError& e, int status = 400) {
   return json_answer({{"error", {{"type", e.type}, {"message", e.message}}}}, status);
+}
+
+/// An exception as an error of the protocol, with the status and the headers of the problem that it is elsewhere.
+Answer no_output(std::exception_ptr thrown) {
+  Answer as_problem = problem(thrown, "");
+  Answer answer = error_answer({"InvalidOutput", Json::parse(as_problem.body).at("detail")}, as_problem.status);
+  answer.headers = std::move(as_problem.headers);
+  return answer;
 }
 
 using Feature = Json (*)(const Exchange& exchange, const Json& body, const Json& document);
@@ -121,19 +129,20 @@ Answer answer_of(Exchange& exchange) try {
 } catch (const ProtocolError& e) {
   return error_answer(e);
 } catch (const Refusal& e) {
-  if (e.reason == reason::internal) return error_answer({"InvalidOutput", e.what()}, 500);
-  if (e.reason != reason::bad_request && e.reason != reason::quota) throw;
+  if (e.reason != reason::bad_request && e.reason != reason::quota) return no_output(std::current_exception());
   std::string message = e.what();
   for (const Fault& fault : e.faults)
     if (fault.message != e.what()) message += "; " + (fault.pointer.empty() ? "" : fault.pointer + " ") + fault.message;
   return error_answer({"InvalidInput", message});
+} catch (...) {
+  return no_output(std::current_exception());
 }
 
 Json model_info(const Exchange&, const Json&, const Json&) {
   return {{"support", {{"Evaluate", true}, {"Gradient", false}, {"ApplyJacobian", false}, {"ApplyHessian", false}}}};
 }
 Json input_sizes(const Exchange& exchange, const Json& body, const Json& document) {
-  return {{"inputSizes", sizes(body, document, exchange.service.jobs)}};
+  return {{"inputSizes", sizes(exchange, body, document)}};
 }
 /// A measure that a run may not have is no output: the protocol has numbers only.
 Json output_sizes(const Exchange&, const Json&, const Json&) {

@@ -21,6 +21,8 @@ struct Quotas {
   std::int64_t open_jobs = 1000;                      ///< accepted and running, of all subjects
   std::int64_t open_jobs_of_one = 200;                ///< of one subject
   std::uint64_t disk_bytes = std::uint64_t{1} << 30;  ///< that must stay free
+  std::uint64_t echo_bytes = std::uint64_t{1} << 30;  ///< of the inputs of echo jobs that are not dismissed, in all
+  std::uint64_t echo_bytes_of_one = std::uint64_t{512} << 20;  ///< of one subject
 };
 
 struct Config {

@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "base/json.hpp"
+#include "base/shares.hpp"
 #include "support/measures.hpp"
 
 namespace talus::service {
 
 /// A request to carry out a process.
 struct Submission {
-  std::string subject;  ///< who owns the job
+  Caller caller;  ///< who owns the job
   Json inputs = Json::object();
   std::vector<std::string> outputs = {};  ///< their names
   bool raw = false;                       ///< the client wants the bare values, without a document around them

@@ -23,6 +23,9 @@ using std::chrono::seconds;
 constexpr double evaluations_per_second = 15e6;  ///< of a core, see README
 constexpr milliseconds histogram_age{1000};      ///< at most, while the job runs
 constexpr std::size_t profiles_kept = 16;        ///< of a job
+constexpr int commands_at_a_time = 4, commands_of_one = 3, fields_at_a_time = 2;
+constexpr seconds command_limit{60}, profile_limit{3600};
+constexpr seconds patience{60};  ///< of a request for a field or a profile
 constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
 /// Which program or file `talus` could not use, from its error output.
@@ -95,6 +98,11 @@ std::optional<std::string> find_kept(const fs::path& file) {
   return text;
 }
 
+/// What may wait in half of the connections, and of one subject in a quarter.
+Productions::Limits limits_of(const Config& config, int at_a_time) {
+  return {.at_a_time = at_a_time, .waiting = config.http_threads / 2, .waiting_of_one = config.http_threads / 4};
+}
+
 /// @throws Refusal internal unless the command succeeded
 void check(const CommandOutput& output, const std::string& what) {
   if (output.ok()) return;
@@ -112,31 +120,40 @@ void drop_nulls(Json& object) {
 
 }  // namespace
 
-CommandOutput Jobs::run_command(std::vector<std::string> arguments, seconds limit) {
-  return run(short_command(config_, std::move(arguments)), limit, running_commands_, seconds(20));
+Jobs::Jobs(const Config& config, Store& store, Scheduler& scheduler)
+    : config_(config),
+      data_{config.data},
+      data_watch_(data_),
+      store_(store),
+      scheduler_(scheduler),
+      commands_("requests that check or change a study", commands_at_a_time, commands_of_one, config.http_threads / 4),
+      fields_(limits_of(config, fields_at_a_time)),
+      runs_(limits_of(config, config.workers)) {}
+
+void Jobs::stop() {
+  stopping_ = true;
+  fields_.stop();
+  runs_.stop();
 }
 
-CommandOutput Jobs::run_once(std::vector<std::string> arguments, seconds limit) {
-  return run(single_run(config_, std::move(arguments)), limit, running_runs_, seconds(60));
+CommandOutput Jobs::run_command(std::vector<std::string> arguments, const Caller& caller) {
+  const Shares::Share place = commands_.take(caller, 1, seconds(20));
+  return run(short_command(config_, std::move(arguments)), command_limit,
+             [&] { return stopping_ || caller.stop.stop_requested(); });
 }
 
 CommandOutput Jobs::prepare(const fs::path& case_file, const StudyPaths& directory, std::int64_t realizations,
-                            std::int64_t seed) {
+                            std::int64_t seed, const Caller& caller) {
   return run_command({"study", case_file.string(), "--out", directory.root.string(), "--realizations",
                       std::to_string(realizations), "--seed", std::to_string(seed), "--prepare"},
-                     seconds(60));
+                     caller);
 }
 
-template <class Semaphore>
-CommandOutput Jobs::run(const Command& command, seconds limit, Semaphore& slots, seconds patience) {
-  if (!slots.try_acquire_for(patience))
-    throw Refusal(reason::unavailable, "too many requests of this kind at once", {}, 10);
-  struct Releaser {
-    Semaphore& slots;
-    ~Releaser() { slots.release(); }
-  } const releaser{slots};
-  CommandOutput output = run_to_end(command, data_.scratch(), limit, [this] { return stopping_.load(); });
+CommandOutput Jobs::run(const Command& command, seconds limit, const Productions::Abandoned& abandoned) {
+  bool given_up = false;
+  CommandOutput output = run_to_end(command, data_.scratch(), limit, [&] { return given_up = abandoned(); });
   if (stopping_) throw Refusal(reason::unavailable, "talusd is stopping");
+  if (given_up) throw Refusal(reason::unavailable, "nobody waits for the answer any more");
   if (output.timed_out)
     throw Refusal(reason::timeout, "this takes longer than " + std::to_string(limit.count()) + " s");
   const bool cut_short = !output.out.empty() && output.out.back() != '\n';
@@ -153,20 +170,26 @@ TemporaryDirectory Jobs::scratch_directory() const {
   return TemporaryDirectory(data_.scratch() / random_hex(DataDirectory::scratch_bytes));
 }
 
-Json Jobs::validate(const Json& document, const std::string& pointer) {
+Json Jobs::validate(const Json& document, const std::string& pointer, const Caller& caller) {
+  const Shares::Share place = commands_.take(caller, 1, seconds(20));
+  return validate(document, pointer, [&] { return stopping_ || caller.stop.stop_requested(); });
+}
+
+Json Jobs::validate(const Json& document, const std::string& pointer, const Productions::Abandoned& abandoned) {
   const TemporaryDirectory scratch = scratch_directory();
   write_file_atomically(scratch / "case.json", dump(document));
-  const CommandOutput output = run_command({"validate", scratch / "case.json", "--json"}, seconds(60));
+  const CommandOutput output =
+      run(short_command(config_, {"validate", scratch / "case.json", "--json"}), command_limit, abandoned);
   if (!output.ok()) refuse_case(output, pointer);
   Json demand = Json::parse(output.out, nullptr, false);
   if (demand.is_discarded()) throw Refusal(reason::unavailable, "the case could not be checked; try again");
   return demand;
 }
 
-std::size_t Jobs::field_terms(const Json& document) {
+std::size_t Jobs::field_terms(const Json& document, const Caller& caller) {
   if (!document.contains("random_field") || document.at("random_field").is_null()) return 0;
   return field_terms_.get(dump(document), 0, {}, [&]() -> Json {
-    const Json demand = validate(document, "");
+    const Json demand = validate(document, "", caller);
     return demand.contains("field") ? demand.at("field").at("terms") : Json(0);
   });
 }
@@ -209,19 +232,21 @@ void Jobs::check_size(double particles, double steps, std::int64_t realizations,
   refuse_if_any(faults, reason::quota, "the job exceeds a quota");
 }
 
-std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response, Milliseconds created) {
-  std::optional<Job> recorded = store_.create(job, response, created);
+std::optional<Job> Jobs::record(const NewJob& job, const Store::Response& response, Milliseconds created,
+                                const std::optional<std::string>& echo_inputs) {
+  std::optional<Job> recorded = store_.create(job, response, created, echo_inputs);
   data_watch_.check();  // a 201 means that the job is on the disk
   if (recorded) scheduler_.wake();
   return recorded;
 }
 
 std::optional<Job> Jobs::submit_study(const Submission& submission, const Store::Response& response) {
-  check_queue(submission.subject);
+  const Caller& caller = submission.caller;
+  check_queue(caller.subject);
   const StudyInputs study = read_study_inputs(submission.inputs);
-  const Json demand = validate(study.document, "/inputs/case");
+  const Json demand = validate(study.document, "/inputs/case", caller);
 
-  NewJob job{.id = random_hex(DataDirectory::id_bytes), .process = "influence-zone", .subject = submission.subject};
+  NewJob job{.id = random_hex(DataDirectory::id_bytes), .process = "influence-zone", .subject = caller.subject};
   const Json& options = study.document.at("study");
   job.planned = options.value("realizations", std::int64_t{100});
   job.seed =
@@ -233,7 +258,7 @@ std::optional<Job> Jobs::submit_study(const Submission& submission, const Store:
   write_file_atomically(scratch / "case.json", dump(study.document));
   TemporaryDirectory made(data_.unfinished(job.id));
   const StudyPaths directory{made.path()};
-  const CommandOutput prepared = prepare(scratch / "case.json", directory, job.planned, job.seed);
+  const CommandOutput prepared = prepare(scratch / "case.json", directory, job.planned, job.seed, caller);
   if (!prepared.ok()) refuse_case(prepared, "/inputs/case");
 
   const Plan plan = find_plan(directory.root).value();
@@ -253,17 +278,31 @@ std::optional<Job> Jobs::submit_study(const Submission& submission, const Store:
 }
 
 std::optional<Job> Jobs::submit_echo(const Submission& submission, const Store::Response& response) {
-  check_queue(submission.subject);
-  const Json kept = {{"outputs", submission.outputs},
-                     {"raw", submission.raw},
-                     {"pause", submission.inputs.value("pause", 0.0)},
-                     {"inputs", submission.inputs}};
+  const std::string& subject = submission.caller.subject;
+  check_queue(subject);
+  const Json kept = {
+      {"outputs", submission.outputs}, {"raw", submission.raw}, {"pause", submission.inputs.value("pause", 0.0)}};
+  const std::string values = dump(submission.inputs);
+  check_echo(subject, values.size());
   return record({.id = random_hex(DataDirectory::id_bytes),
                  .process = "echo",
-                 .subject = submission.subject,
+                 .subject = subject,
                  .title = "echo",
                  .inputs = dump(kept)},
-                response, system_now());
+                response, system_now(), values);
+}
+
+void Jobs::check_echo(const std::string& subject, std::size_t bytes) const {
+  const auto check = [&](std::int64_t kept, std::uint64_t most, const char* whose) {
+    if (static_cast<std::uint64_t>(kept) + bytes > most)
+      throw Refusal(reason::queue_full,
+                    std::string("echo jobs ") + whose + " keep " + std::to_string(kept >> 20) +
+                        " MiB of inputs; at most " + std::to_string(most >> 20) +
+                        " MiB may be kept: delete some of them",
+                    {}, 60);
+  };
+  check(store_.echo_bytes({}), config_.quotas.echo_bytes, "of all");
+  check(store_.echo_bytes(subject), config_.quotas.echo_bytes_of_one, "of yours");
 }
 
 void Jobs::dismiss(const Job& job) {
@@ -278,7 +317,7 @@ bool Jobs::extend(const Job& job, std::int64_t more, const Store::Response& resp
   ended(job.state) ? check_queue(job.subject) : check_disk();  // an ended one will be open again
   check_size(job.particles, job.steps, planned, "/realizations");
   const StudyPaths directory{data_.job(job.id)};
-  const CommandOutput prepared = prepare(checked_case(data_, job), directory, planned, job.seed);
+  const CommandOutput prepared = prepare(checked_case(data_, job), directory, planned, job.seed, {job.subject});
   if (!prepared.ok())
     throw Refusal(reason::conflict, prepared.err.empty() ? "the study cannot be extended" : prepared.err);
   const bool fresh = store_.extend(job.number, planned, response);
@@ -286,21 +325,30 @@ bool Jobs::extend(const Job& job, std::int64_t more, const Store::Response& resp
   return fresh;
 }
 
-Json Jobs::evaluate(const Json& document) {
-  const Json demand = validate(document, "");
+Json Jobs::evaluate(const Json& document, const Caller& caller) {
+  const std::string text = dump(document);
+  return parse_json(runs_.get("evaluation/" + sha256(text), caller, 2 * config_.time_limit,
+                              [this, document](const Productions::Abandoned& abandoned) {
+                                return make_evaluation(document, abandoned);
+                              }),
+                    "result.json");
+}
+
+std::string Jobs::make_evaluation(const Json& document, const Productions::Abandoned& abandoned) {
+  const Json demand = validate(document, "", abandoned);
   check_size(particles_of(demand), demand.at("steps").get<double>(), 1);
   const TemporaryDirectory scratch = scratch_directory();
   write_file_atomically(scratch / "case.json", dump(document));
-  const CommandOutput output =
-      run_once({scratch / "case.json", "--seed", "0", "--out", scratch / "run"}, config_.time_limit);
+  const Command command = single_run(config_, {scratch / "case.json", "--seed", "0", "--out", scratch / "run"});
+  const CommandOutput output = run(command, config_.time_limit, abandoned);
   if (!output.end.signal && output.end.exit_code == Exit::bad_case) throw Refusal(reason::bad_request, output.err);
   if (!output.ok()) throw Refusal(reason::internal, "the run failed: " + output.err);
-  Json result = read_json((scratch / "run") / "result.json", 1 << 20);
+  const Json result = read_json((scratch / "run") / "result.json", 1 << 20);
   const Json& quality = result.at("quality");
   if (quality.at("verdict") == word(Verdict::invalid))
     throw Refusal(reason::internal, "the run failed: its result is invalid, since " +
                                         quality.at("reasons").at(0).at("message").get<std::string>());
-  return result;
+  return dump(result);
 }
 
 Json Jobs::distribution(const Job& job, const Measure& quantity, const Bins& bins) {
@@ -331,12 +379,20 @@ Json Jobs::summary(const Job& job) {
   return read();
 }
 
-std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
+std::string Jobs::field(const Job& job, std::int64_t index, bool svg, const Caller& caller) {
+  const std::string name = job.id + "/" + std::to_string(index) + (svg ? ".svg" : ".json");
+  return fields_.get(name, caller, patience, [this, job, index, svg](const Productions::Abandoned& abandoned) {
+    return make_field(job, index, svg, abandoned);
+  });
+}
+
+std::string Jobs::make_field(const Job& job, std::int64_t index, bool svg, const Productions::Abandoned& abandoned) {
   const TemporaryDirectory scratch = scratch_directory();
   const fs::path file = scratch / (svg ? "field.svg" : "field.csv");
-  const CommandOutput output = run_command({"field", checked_case(data_, job), "--realization", std::to_string(index),
-                                            "--seed", std::to_string(job.seed), "--out", file, "--json"},
-                                           seconds(60));
+  const CommandOutput output =
+      run(short_command(config_, {"field", checked_case(data_, job), "--realization", std::to_string(index), "--seed",
+                                  std::to_string(job.seed), "--out", file, "--json"}),
+          command_limit, abandoned);
   check(output, "the field");
   const std::string text = read_file(file, max_bytes);
   if (svg) return text;
@@ -353,22 +409,29 @@ std::string Jobs::field(const Job& job, std::int64_t index, bool svg) {
   return dump(json);
 }
 
-std::string Jobs::profile(const Job& job, std::int64_t index, bool svg) {
-  const StudyPaths study{data_.job(job.id)};
-  const fs::path case_file = checked_case(data_, job);
-  fs::create_directories(study.profiles());
-  const std::string extension = svg ? ".svg" : ".json";
-  const fs::path kept = study.profiles() / (std::to_string(index) + extension);
+std::string Jobs::profile(const Job& job, std::int64_t index, bool svg, const Caller& caller) {
+  const fs::path kept = StudyPaths{data_.job(job.id)}.profiles() / (std::to_string(index) + (svg ? ".svg" : ".json"));
   if (auto text = find_kept(kept)) return *text;
+  return runs_.get(kept.string(), caller, patience, [this, job, index, kept](const Productions::Abandoned& abandoned) {
+    if (auto text = find_kept(kept)) return *text;  // made between the two looks
+    return make_profile(job, index, kept, abandoned);
+  });
+}
+
+std::string Jobs::make_profile(const Job& job, std::int64_t index, const fs::path& kept,
+                               const Productions::Abandoned& abandoned) {
+  const fs::path case_file = checked_case(data_, job);
   const TemporaryDirectory scratch = scratch_directory();
-  const fs::path out = scratch / "run", file = scratch / ("profile" + extension);
-  check(run_once({case_file, "--realization", std::to_string(index), "--seed", std::to_string(job.seed), "--out", out},
-                 seconds(3600)),
+  const fs::path out = scratch / "run", file = scratch / ("profile" + kept.extension().string());
+  const std::string seed = std::to_string(job.seed);
+  check(run(single_run(config_, {case_file, "--realization", std::to_string(index), "--seed", seed, "--out", out}),
+            profile_limit, abandoned),
         "the profile");
-  check(run_command({"profile", out, "--out", file}, seconds(60)), "the profile");
+  check(run(short_command(config_, {"profile", out, "--out", file}), command_limit, abandoned), "the profile");
   const std::string text = read_file(file, max_bytes);
+  fs::create_directories(kept.parent_path());
   write_file_atomically(kept, text + checksum_line(text));
-  prune(study.profiles());
+  prune(kept.parent_path());
   return text;
 }
 

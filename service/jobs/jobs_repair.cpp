@@ -24,7 +24,7 @@ void Jobs::repair(const Job& job) {
     const fs::path case_file = checked_case(data_, job);
     const TemporaryDirectory scratch = scratch_directory();
     const fs::path made = scratch / "study";
-    const CommandOutput prepared = prepare(case_file, {made}, job.planned, job.seed);
+    const CommandOutput prepared = prepare(case_file, {made}, job.planned, job.seed, {job.subject});
     if (!prepared.ok()) throw IoError("the study cannot be prepared again: " + prepared.err);
     repair_directory(data_, job, made);
   } catch (const IoError& e) {

@@ -21,7 +21,9 @@ constexpr milliseconds poll_interval{10};
 constexpr milliseconds idle_interval{500};
 constexpr milliseconds trouble_interval{1000};
 constexpr milliseconds reasons_interval{2000};
-constexpr milliseconds removal_interval{5000};  ///< between attempts to remove a directory
+constexpr milliseconds removal_interval{5000};   ///< between attempts to remove a directory
+constexpr milliseconds longest_echo_wait{1000};  ///< between looks at waiting echo jobs: the clock may be set
+constexpr std::int64_t pages_at_a_time = 2000;   ///< of the database, returned to the file system
 
 /// Removes a directory. @return false where a network file system still holds it; a later attempt may succeed
 bool removed(const fs::path& directory) {
@@ -100,6 +102,7 @@ void Scheduler::wait_for(milliseconds limit) {
   }
   for (const StudyNumber job : changed) engine_.forget(job);
   removing_ |= !changed.empty();
+  shrinking_ |= !changed.empty();
   read_queue_ = true;
   next_renewal_ = {};
 }
@@ -109,7 +112,7 @@ void Scheduler::loop() {
     try {
       tick();
       set_trouble("");
-      wait_for(engine_.running() > 0 || echo_waiting_ ? poll_interval : idle_interval);
+      wait_for(until_next_tick());
     } catch (const std::exception& e) {
       // A full disk or a database that cannot be written: runs continue, and how they end is recorded later.
       set_trouble(e.what());
@@ -137,6 +140,13 @@ std::string Scheduler::trouble() const {
   return trouble_;
 }
 
+milliseconds Scheduler::until_next_tick() const {
+  if (engine_.running() > 0 || shrinking_) return poll_interval;
+  if (next_echo_ == Steady::time_point::max()) return idle_interval;
+  const auto left = std::chrono::ceil<milliseconds>(next_echo_ - Steady::now());
+  return std::clamp(left, milliseconds(0), idle_interval);
+}
+
 /// On a full disk nothing else can be done.
 void Scheduler::free_space() {
   try {
@@ -156,6 +166,7 @@ void Scheduler::tick() {
   }
   run_echo();
   if (removing_ && Steady::now() >= next_removal_) remove_dismissed();
+  if (shrinking_) shrink_queue();
   if (read_queue_) {
     engine_.start_runs();
     counters_.running = static_cast<int>(engine_.running());
@@ -238,22 +249,28 @@ void Scheduler::note_pending_reasons() {
   }
 }
 
-/// Starts and ends echo jobs, which only wait.
+/// Starts and ends echo jobs, which only wait. Nothing is read before the next of them is due.
 void Scheduler::run_echo() {
-  if (!echo_waiting_ && !read_queue_) return;
-  const std::vector<Job> waiting = store_.open_jobs_without_runs("echo");
-  echo_waiting_ = !waiting.empty();
-  for (const Job& job : waiting) {
-    const double pause = Json::parse(job.inputs).value("pause", 0.0);
-    if (job.state == JobState::accepted) {
-      store_.start(job.number);
-    } else if (static_cast<double>(system_now() - *job.started) >= 1000.0 * pause || system_now() < *job.started) {
+  if (!read_queue_ && Steady::now() < next_echo_) return;
+  next_echo_ = Steady::time_point::max();
+  for (const Job& job : store_.open_jobs_without_runs("echo")) {
+    const auto pause = static_cast<Milliseconds>(1000.0 * Json::parse(job.inputs).value("pause", 0.0));
+    const Milliseconds now = system_now(), waited = job.started ? now - *job.started : 0;
+    const bool due = job.state == JobState::running && (waited >= pause || waited < 0);  // < 0: the clock was set back
+    if (due)
       store_.finish(job.number, JobState::successful, "done");
-    } else {
-      continue;
-    }
-    changes_.notify();
+    else
+      next_echo_ = std::min(
+          next_echo_, Steady::now() + std::clamp(milliseconds(pause - waited), milliseconds(0), longest_echo_wait));
+    if (job.state == JobState::accepted) store_.start(job.number);
+    if (due || job.state == JobState::accepted) changes_.notify();
   }
+}
+
+/// Returns the pages of deleted rows to the file system, some at a time. What fails is tried after the next dismissal.
+void Scheduler::shrink_queue() {
+  shrinking_ = false;
+  shrinking_ = store_.shrink(pages_at_a_time);
 }
 
 /// Removes the directories of dismissed jobs, each once none of its processes runs. No other directory is removed.

@@ -85,6 +85,8 @@ class Scheduler {
   void run_echo();
   void remove_dismissed();
   void set_trouble(const std::string& why);
+  void shrink_queue();
+  std::chrono::milliseconds until_next_tick() const;
   void free_space();
   bool room_on_disk() const;
 
@@ -97,9 +99,10 @@ class Scheduler {
 
   std::set<StudyNumber> pending_;  ///< jobs with a recorded reason why none of their runs is under way
   Steady::time_point next_renewal_{}, next_reasons_{}, next_removal_{};
-  bool read_queue_ = true;  ///< the queue may hold something to do
-  bool echo_waiting_ = false;
-  bool removing_ = true;  ///< directories of dismissed jobs may be left
+  bool read_queue_ = true;                                    ///< the queue may hold something to do
+  Steady::time_point next_echo_ = Steady::time_point::max();  ///< when an echo job may be due; max: none waits
+  bool removing_ = true;                                      ///< directories of dismissed jobs may be left
+  bool shrinking_ = true;  ///< the database may hold pages that dismissed jobs have left
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;

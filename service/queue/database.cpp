@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/documents.hpp"
+#include "base/json.hpp"
 #include "study/record.hpp"
 #include "support/measures.hpp"
 
@@ -14,12 +15,15 @@ namespace {
 
 constexpr int busy_timeout_ms = 5000;
 constexpr int reader_count = 8;
+constexpr int journal_bytes = 16 << 20;  ///< of the write-ahead log, once it has been copied into the database
 constexpr const char* damage_advice =
     "restore a backup, or move it away with its -wal and -shm and take the jobs back with talusd --adopt";
 
-/// FULL: what is committed is on the disk, so a 201 holds after a power cut.
+/// FULL: what is committed is on the disk, so a 201 holds after a power cut. INCREMENTAL takes effect on a new file.
 void prepare(SQLite::Database& db) {
+  db.exec("PRAGMA auto_vacuum = INCREMENTAL");
   db.exec("PRAGMA journal_mode = WAL");
+  db.exec("PRAGMA journal_size_limit = " + std::to_string(journal_bytes));
   db.exec("PRAGMA synchronous = FULL");
   db.exec("PRAGMA foreign_keys = ON");
 }
@@ -41,6 +45,19 @@ void add_number_columns(SQLite::Database& db) {
   // the query, so no row of the table is read.
   db.exec("CREATE INDEX IF NOT EXISTS runs_measures ON runs (job, level, kind, idx, state" + all +
           ") WHERE state = 'done'");
+}
+
+/// Rewrites a database of an earlier version, so that unused pages can be returned to the file system. Without room for
+/// that it stays as it is.
+void allow_shrinking(SQLite::Database& db, const std::filesystem::path& path) {
+  constexpr int incremental = 2;
+  if (db.execAndGet("PRAGMA auto_vacuum").getInt() == incremental) return;
+  try {
+    db.exec("PRAGMA auto_vacuum = INCREMENTAL");
+    db.exec("VACUUM");
+  } catch (const SQLite::Exception& e) {
+    log_info("not_rewritten", {{"file", path.string()}, {"why", e.what()}});
+  }
 }
 
 SQLite::Database open(const std::filesystem::path& path) try {
@@ -71,6 +88,7 @@ Database::Database(std::filesystem::path path) : path_(std::move(path)), writer_
   });
   migrate();
   translated([&] {
+    allow_shrinking(writer_, path_);
     // The histograms come from this index alone. Unlike the pages of tables, its content follows from other pages.
     if (writer_.execAndGet("PRAGMA integrity_check(1)").getString() != "ok") writer_.exec("REINDEX");
     for (int i = 0; i < reader_count; ++i) {

@@ -40,7 +40,7 @@ struct NewJob {
   std::string process;
   std::string subject;  ///< who owns it
   std::string title = {};
-  std::string inputs = "{}";  ///< as the process needs them later, JSON
+  std::string inputs = "{}";  ///< what the process needs later, JSON; the values of echo are kept apart
   std::int64_t seed = 0;
   std::int64_t planned = 0;     ///< realizations
   std::int64_t replicates = 0;  ///< of realization 0, for the numerical noise

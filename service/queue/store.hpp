@@ -35,9 +35,15 @@ class Store final : public talus::Store {
   /// Records a job and its runs; durable when this returns.
   /// @param response  stored in the same transaction; unset: the request had no key
   /// @param created  unset: now
+  /// @param echo_inputs  of an echo job: the values that it repeats, JSON, kept until it is dismissed
   /// @return the job; nothing where another request has used the key meanwhile
   std::optional<Job> create(const NewJob& job, const Response& response = {},
-                            const std::optional<Milliseconds>& created = {});
+                            const std::optional<Milliseconds>& created = {},
+                            const std::optional<std::string>& echo_inputs = {});
+  /// The values of an echo job; "{}" where there are none.
+  std::string echo_inputs(std::int64_t job);
+  /// How many bytes of them are kept, of one subject or of all.
+  std::int64_t echo_bytes(const std::optional<std::string>& subject);
   /// Records a job again that the queue has lost, with the outcomes that its directory holds; the rest is queued.
   /// @param created  when it was first recorded
   Job recreate(const NewJob& job, Milliseconds created, const Records& runs, const Records& replicates);
@@ -60,6 +66,8 @@ class Store final : public talus::Store {
   bool finish(std::int64_t job, JobState state, const std::string& message);
   /// Dismisses a job in any state and deletes its runs, so no claim on them is current any more.
   void dismiss(std::int64_t job);
+  /// Returns up to `most` unused pages to the file system, if there are more than a few. @return whether more are left
+  bool shrink(std::int64_t most);
   /// At start: queues runs again whose record does not agree with its checksum, and recounts the runs of jobs whose
   /// counts are wrong. Reads every run once. @return what was damaged
   std::vector<std::string> repair_rows();

@@ -7,6 +7,7 @@
 namespace talus::service {
 namespace {
 
+constexpr std::int64_t pages_worth_shrinking = 1000;  ///< fewer are left for the next jobs
 constexpr Milliseconds key_lifetime = Milliseconds{7} * 24 * 3600 * 1000;
 
 /// Deletes old responses and stores this one. @return false where there is one for its key already
@@ -54,10 +55,14 @@ void insert_runs(SQLite::Database& db, std::int64_t job, std::int64_t replicates
 }
 
 std::optional<Job> Store::create(const NewJob& job, const Response& response,
-                                 const std::optional<Milliseconds>& created) try {
+                                 const std::optional<Milliseconds>& created,
+                                 const std::optional<std::string>& echo_inputs) try {
   return db_.write([&](SQLite::Database& db) {
     const Milliseconds now = clock_();
     std::optional<Job> made = insert_job(db, job, created.value_or(now), now);
+    if (echo_inputs)
+      execute(db, "INSERT INTO echo_inputs (job, bytes, inputs) VALUES (?, ?, ?)", made->number,
+              static_cast<std::int64_t>(echo_inputs->size()), *echo_inputs);
     if (response && !store_response(db, response(*made), now)) throw KeyTaken{};
     return made;
   });
@@ -170,6 +175,32 @@ void Store::dismiss(std::int64_t job) {
     change_job(db, job, clock_(), "state = 'dismissed', message = 'dismissed', finished = COALESCE(finished, ?2)",
                "state != 'dismissed'");
     execute(db, "DELETE FROM runs WHERE job = ?", job);
+    execute(db, "DELETE FROM echo_inputs WHERE job = ?", job);
+  });
+}
+
+std::string Store::echo_inputs(std::int64_t job) {
+  return db_.read([&](SQLite::Database& db) -> std::string {
+    SQLite::Statement query = statement(db, "SELECT inputs FROM echo_inputs WHERE job = ?", job);
+    return query.executeStep() ? query.getColumn(0).getString() : "{}";
+  });
+}
+
+std::int64_t Store::echo_bytes(const std::optional<std::string>& subject) {
+  return db_.read([&](SQLite::Database& db) {
+    SQLite::Statement query = statement(
+        db, "SELECT SUM(bytes) FROM echo_inputs JOIN jobs ON job = number WHERE ?1 IS NULL OR subject = ?1", subject);
+    query.executeStep();
+    return query.getColumn(0).getInt64();
+  });
+}
+
+bool Store::shrink(std::int64_t most) {
+  const auto unused = [](SQLite::Database& db) { return db.execAndGet("PRAGMA freelist_count").getInt64(); };
+  if (db_.read(unused) <= pages_worth_shrinking) return false;
+  return db_.write([&](SQLite::Database& db) {
+    db.exec("PRAGMA incremental_vacuum(" + std::to_string(most) + ")");
+    return unused(db) > pages_worth_shrinking;
   });
 }
 

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 struct JsonLimits {
   std::size_t bytes = std::size_t{16} << 20;  ///< of text
   std::size_t nesting = 64;                   ///< objects and arrays within one another
-  std::size_t values = 2'000'000;             ///< members and elements in all
+  std::size_t values = 500'000;               ///< members and elements in all: up to 50 bytes of memory each
   std::size_t members = 1000;                 ///< of one object: looking one up is linear
   std::size_t string = 65'536;                ///< bytes of one string or key
 };

@@ -145,6 +145,65 @@ TEST_F(StoreTest, ADatabaseFromBeforeLevelsIsMigrated) {
   EXPECT_FALSE(SQLite::Statement(raw, "PRAGMA foreign_key_check(runs)").executeStep());
 }
 
+struct EchoTest : StoreTest {
+  Job add_echo(const std::string& id, const std::string& values, const std::string& subject = "a") {
+    return *store->create({.id = id, .process = "echo", .subject = subject, .inputs = R"({"pause":0.5})"}, {}, {},
+                          values);
+  }
+  std::uintmax_t file_bytes() {
+    SQLite::Database(directory / "queue.sqlite", SQLite::OPEN_READWRITE).exec("PRAGMA wal_checkpoint(TRUNCATE)");
+    return std::filesystem::file_size(directory / "queue.sqlite");
+  }
+};
+
+TEST_F(EchoTest, TheValuesOfEchoJobsAreKeptApartUntilTheyAreDismissed) {
+  const Job one = add_echo("one", R"({"s":"x"})");
+  add_echo("two", R"({"s":"yy"})", "b");
+  EXPECT_EQ(store->jobs({}).at(1).inputs, R"({"pause":0.5})");
+  EXPECT_EQ(store->echo_inputs(one.number), R"({"s":"x"})");
+  EXPECT_EQ(store->echo_bytes({}), 9 + 10);
+  EXPECT_EQ(store->echo_bytes("b"), 10);
+  store->dismiss(one.number);
+  EXPECT_EQ(store->echo_inputs(one.number), "{}");
+  EXPECT_EQ(store->echo_bytes("a"), 0);
+}
+
+TEST_F(EchoTest, DismissedJobsFreeTheirSpace) {
+  const std::string values(1 << 20, 'x');
+  for (int i = 0; i < 8; ++i) add_echo(std::to_string(i), values);
+  EXPECT_FALSE(store->shrink(100));
+  EXPECT_GT(file_bytes(), 8 * values.size());
+  for (const Job& each : store->jobs({})) store->dismiss(each.number);
+  EXPECT_TRUE(store->shrink(100));
+  EXPECT_FALSE(store->shrink(1'000'000));
+  EXPECT_LT(file_bytes(), values.size());
+}
+
+TEST_F(EchoTest, ADatabaseWithTheValuesInTheRowsOfTheJobsIsMigrated) {
+  for (const char* id : {"kept", "dismissed"}) add_echo(id, "{}");
+  store->dismiss(job("dismissed").number);
+  add("study", 1);
+  store.reset();
+  {
+    SQLite::Database raw((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE);
+    raw.exec(
+        "PRAGMA journal_mode = DELETE; PRAGMA auto_vacuum = NONE; VACUUM; DROP TABLE echo_inputs;"
+        "PRAGMA user_version = 6");
+    raw.exec(R"(UPDATE jobs SET inputs = '{"outputs":["s"],"pause":0.5,"inputs":{"s":"\u00e9","x":[1e300,0.10]}}'
+                WHERE process = 'echo')");
+    EXPECT_EQ(raw.execAndGet("PRAGMA auto_vacuum").getInt(), 0);
+  }
+  store = open();
+  EXPECT_EQ(job("kept").inputs, R"({"outputs":["s"],"pause":0.5})");
+  EXPECT_EQ(store->echo_inputs(job("kept").number), R"({"s":"\u00e9","x":[1e300,0.10]})");
+  EXPECT_EQ(job("dismissed").inputs, R"({"outputs":["s"],"pause":0.5})");
+  EXPECT_EQ(store->echo_inputs(job("dismissed").number), "{}");
+  EXPECT_EQ(store->echo_bytes({}), 31);
+  EXPECT_EQ(job("study").inputs, "{}");
+  SQLite::Database raw((directory / "queue.sqlite").string());
+  EXPECT_EQ(raw.execAndGet("PRAGMA auto_vacuum").getInt(), 2);
+}
+
 TEST_F(StoreTest, TheIndexCoversTheHistogram) {
   SQLite::Database raw((directory / "queue.sqlite").string());
   SQLite::Statement plan(raw,

@@ -72,6 +72,20 @@ TEST(ParseJson, HoldsItsLimits) {
   EXPECT_EQ(complaint(R"({"a": 1, "b": 1, "c": 1})", {.members = 2}), "/c: one object holds more than 2 keys");
 }
 
+/// "[{},{},...]"
+std::string empty_objects(std::size_t count) {
+  std::string text = "[{}";
+  for (std::size_t i = 1; i < count; ++i) text += ",{}";
+  return text + "]";
+}
+
+// A parser that walks the open containers at each end of an object takes hours for this.
+TEST(ParseJson, TakesManyObjectsUpToItsLimit) {
+  EXPECT_EQ(parse_json(empty_objects(499'999), "c.json").size(), 499'999);
+  EXPECT_EQ(complaint(empty_objects(500'000)), "the document holds more than 500000 values");
+  EXPECT_EQ(complaint(empty_objects(5'000'000)), "the document holds more than 500000 values");
+}
+
 TEST(ReadText, RefusesWhatIsNoFile) {
   EXPECT_THROW(read_text("/nonexistent/case.json"), IoError);
   EXPECT_THROW(read_text("/"), IoError);

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""What many requests at once may take: one thing is made once, few wait, documents and inputs take bounded memory."""
+import concurrent.futures
+import json
+import time
+
+from daemon import TALUS, ServiceTest, case, main, study
+
+OBJECTS = "[" + ",".join(["{}"] * 400_000) + "]"  # 1.2 MB
+
+
+class Shares(ServiceTest):
+    def setUp(self):
+        super().setUp()
+        self.gate, self.runs = self.dir / "gate", self.dir / "runs"
+        self.runs.write_text("")
+        fake = self.dir / "talus"  # as talus, but runs outside the queue are noted, and wait while the gate is there
+        fake.write_text(
+            f'#!/bin/sh\ncase "$*" in run*scratch*) echo run >> {self.runs};'
+            f' while [ -e {self.gate} ]; do sleep 0.05; done;; esac\nexec {TALUS} "$@"\n'
+        )
+        fake.chmod(0o755)
+        models = self.dir / "models"
+        models.mkdir()
+        document = case()
+        document["random_field"]["terms"] = 2
+        (models / "slope.json").write_text(json.dumps(document))
+        self.start("--talus", fake, "--http-threads", 64, "--models", models)  # 16 requests of one subject may wait
+
+    def made(self):
+        return len(self.runs.read_text().split())
+
+    def wait_until(self, holds, seconds=60):
+        deadline = time.monotonic() + seconds
+        while not holds():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
+
+    def test_a_profile_is_made_once_for_all_who_ask(self):
+        job = self.daemon.submit(study(2))
+        self.daemon.wait_for(job)
+        path = f"/jobs/{job}/realizations/0/profile"
+        self.gate.write_text("")
+        with concurrent.futures.ThreadPoolExecutor(40) as pool:
+            replies = [pool.submit(self.daemon.get, path) for _ in range(40)]
+            self.wait_until(lambda: self.made() == 1 and sum(reply.done() for reply in replies) == 40 - 16)
+            self.gate.unlink()
+        replies = [reply.result() for reply in replies]
+        self.assertEqual(sorted(reply.status for reply in replies), [200] * 16 + [503] * 24)
+        self.assertEqual({reply.headers["Retry-After"] for reply in replies if reply.status == 503}, {"5"})
+        self.assertEqual(len({reply.body for reply in replies if reply.status == 200}), 1)
+        self.assertEqual(self.daemon.get(path).status, 200)
+        self.assertEqual(self.made(), 1)
+
+    def test_evaluations_wait_for_one_another(self):
+        def evaluate(i):
+            return self.daemon.post("/Evaluate", {"name": "slope", "input": [[i / 10, 0.5]]})
+
+        self.gate.write_text("")
+        with concurrent.futures.ThreadPoolExecutor(20) as pool:
+            replies = [pool.submit(evaluate, i % 10) for i in range(20)]
+            self.wait_until(lambda: self.made() == 2 and sum(reply.done() for reply in replies) == 20 - 16)
+            self.gate.unlink()
+        replies = [reply.result() for reply in replies]
+        self.assertEqual(sorted(reply.status for reply in replies), [200] * 16 + [503] * 4)
+        for reply in replies:
+            if reply.status == 200:
+                self.assertEqual(set(reply.json), {"output"})
+            else:
+                self.assertEqual(reply.json["error"]["type"], "InvalidOutput")
+                self.assertIn("too many requests that wait", reply.json["error"]["message"])
+                self.assertEqual(reply.headers["Retry-After"], "5")
+        self.assertLessEqual(self.made(), 10)
+
+    def test_echo_jobs_leave_no_trace(self):
+        body = {"inputs": {"s": "x", "pause": 60, "o": {"a": ["y" * 4000] * 500}}}
+        prefer = {"Prefer": "respond-async"}
+        jobs = [self.daemon.post("/processes/echo/execution", body, headers=prefer).json["jobID"] for _ in range(8)]
+
+        def size():
+            return sum(path.stat().st_size for path in self.daemon.data.glob("queue.sqlite*"))
+
+        self.assertGreater(size(), 16_000_000)
+        self.assertLess(len(self.daemon.get("/jobs").body), 20_000)
+        for job in jobs:
+            self.daemon.request("DELETE", f"/jobs/{job}")
+        self.daemon.wait_for(jobs[0], ("dismissed",))
+        done = {"inputs": {"s": "x", "pause": 0.1}}
+        job = self.daemon.post("/processes/echo/execution", done, headers=prefer).json["jobID"]
+        self.assertEqual(self.daemon.wait_for(job)["status"], "successful")
+        self.assertEqual(self.daemon.get(f"/jobs/{job}/results").json, {"s": "x"})
+
+        def small():
+            self.daemon.post("/processes/echo/execution", done, headers=prefer)  # the log shrinks when it is next written
+            return (self.daemon.data / "queue.sqlite").stat().st_size < 5_000_000
+
+        self.wait_until(small)
+
+    def test_large_documents_are_in_memory_one_after_the_other(self):
+        with concurrent.futures.ThreadPoolExecutor(24) as pool:
+            replies = list(pool.map(lambda _: self.daemon.post("/processes/echo/execution", OBJECTS), range(24)))
+        self.assertLessEqual({reply.status for reply in replies}, {400, 503})
+        self.assertIn(400, {reply.status for reply in replies})
+        self.assertEqual(self.daemon.get("/healthz").status, 200)
+
+
+if __name__ == "__main__":
+    main({"Shares": Shares})
