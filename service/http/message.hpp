@@ -1,6 +1,7 @@
 #pragma once
 // Request and answer as the handlers see them, independent of the HTTP library.
 
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <map>
@@ -47,6 +48,25 @@ struct Answer {
   std::string body = {};
   std::vector<std::pair<std::string, std::string>> headers = {};
   std::function<void(const Sink&)> stream = {};  ///< instead of a body
+};
+
+/// Who does the work of a request.
+enum class Lane {
+  immediate,   ///< the thread of the sockets: a constant answer, of which there can be any number
+  operation,   ///< for the operator, whatever else goes on
+  request,     ///< reads and changes of the queue
+  production,  ///< what is computed for the request
+  waiting      ///< waits for something else
+};
+
+/// What is to be done with a request whose body has not been read yet.
+struct Admission {
+  /// Called once, with the body, from another thread; does not throw.
+  std::function<Answer(std::string body, std::stop_token stop)> handle = {};
+  std::optional<Answer> refusal = {};  ///< instead: the answer, without the body
+  Lane lane = Lane::request;
+  std::string subject = {};
+  std::chrono::seconds limit{120};  ///< until the answer
 };
 
 struct Service;

@@ -190,8 +190,8 @@ Routes realization_routes() {
   return {{"GET", "/jobs/{}/histogram", Role::read, histogram},
           {"GET", "/jobs/{}/realizations", Role::read, list_realizations},
           {"GET", "/jobs/{}/realizations/{}", Role::read, one},
-          {"GET", "/jobs/{}/realizations/{}/field", Role::read, field},
-          {"GET", "/jobs/{}/realizations/{}/profile", Role::read, profile},
+          {"GET", "/jobs/{}/realizations/{}/field", Role::read, field, Lane::production},
+          {"GET", "/jobs/{}/realizations/{}/profile", Role::read, profile, Lane::production},
           {"POST", "/jobs/{}/retry", Role::submit, retry},
           {"POST", "/jobs/{}/extend", Role::submit, extend}};
 }

@@ -162,7 +162,7 @@ Routes umbridge_routes() {
           {"POST", "/ModelInfo", Role::read, answer_of<model_info>},
           {"POST", "/InputSizes", Role::read, answer_of<input_sizes>},
           {"POST", "/OutputSizes", Role::read, answer_of<output_sizes>},
-          {"POST", "/Evaluate", Role::submit, answer_of<evaluate>},
+          {"POST", "/Evaluate", Role::submit, answer_of<evaluate>, Lane::production},
           {"POST", "/Gradient", Role::read, answer_of<unsupported>},
           {"POST", "/ApplyJacobian", Role::read, answer_of<unsupported>},
           {"POST", "/ApplyHessian", Role::read, answer_of<unsupported>}};

@@ -18,7 +18,7 @@ HEAD = b"Host: localhost\r\n"
 
 
 class Probes(ServiceTest):
-    """What Debian 12's cpp-httplib 0.11.4 takes by itself, fired over a raw socket."""
+    """What some HTTP servers take, fired over a raw socket."""
 
     options = ("--max-body", "0.01")
 
