@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "case/outline.hpp"
 #include "case/overlay.hpp"
 #include "case/sections.hpp"
 #include "particles/geometry.hpp"
+#include "particles/ground.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/reach.hpp"
 #include "support/text.hpp"
@@ -85,6 +87,28 @@ void warn_of_overhangs(const Terrain& terrain, std::vector<Fault>& warnings) {
                             ": rock hangs over there; if that is not meant, check the order of the vertices"});
     return;
   }
+}
+
+/// Least distance between the bed and points of the outlines, at most `step` apart [m].
+double gap_above_bed(const Model& model, double step) {
+  const Ground bed({{model.terrain.bed, model.terrain.closed}});
+  double least = std::numeric_limits<double>::infinity();
+  for (const SlidePart& part : model.slide) {
+    const Polyline outline{part.outline, true};
+    const auto points = static_cast<int>(std::ceil(outline.length() / step));
+    for (int k = 0; k < points; ++k)
+      least = std::min(least, std::abs(bed.nearest(outline.at(outline.length() * k / points)).distance));
+  }
+  return least;
+}
+
+/// Legal, but most often elevations from two surveys.
+void warn_of_a_slide_in_the_air(const Model& model, std::vector<Fault>& warnings) {
+  const double gap = gap_above_bed(model, model.dx);
+  if (gap > model.dx)
+    warnings.push_back({"/slide", "hangs " + rounded(gap) +
+                                      " m above the bed, onto which it falls before it slides; if that is not meant, "
+                                      "check the elevations of both"});
 }
 
 void warn_of_open_ends(const Model& model, std::vector<Fault>& warnings) {
@@ -182,6 +206,7 @@ std::vector<Fault> find_warnings(const Case& c) {
   warn_of_unlikely_values(model, warnings);
   if (!model.terrain.closed) warn_of_overhangs(model.terrain, warnings);
   if (!model.terrain.closed) warn_of_open_ends(model, warnings);
+  warn_of_a_slide_in_the_air(model, warnings);
   warn_of_thin_front(model, warnings);
   if (c.field) warn_of_unused_keys(*c.field, warnings);
   if (model.numerics.precision == Precision::full)

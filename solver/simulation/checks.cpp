@@ -66,8 +66,9 @@ constexpr Check checks[] = {
      {},
      [](const RunFacts&, double x) {
        return percent(x) +
-              " of the energy went into artificial viscosity and density diffusion, which fall with the spacing, "
-              "so that they decide the run-out: state a viscosity or mu_i, or refine";
+              " of the energy went into artificial viscosity and density diffusion instead of the soil's friction and "
+              "viscosity, so that they decide the run-out: refine, and state a viscosity or mu_i where the soil has "
+              "none (soil that falls onto the ground loses its energy this way at any spacing)";
      }},
     // What slides on friction comes to rest below the energy line (Heim 1932). The tip of a slide may pass it, pushed
     // from behind, the tip of a dam break by its way to the line once more (Savage & Hutter 1989); with 1 % of the mass

@@ -103,6 +103,20 @@ TEST(Warnings, AnOpenEndWithinReach) {
 }
 
 // A block of 3 m on flat ground, frictionless: 2 c carries its weight of 58.9 kPa from c = 29.4 kPa on.
+TEST(Warnings, ASlideThatHangsInTheAir) {
+  const auto raised = [](double by) {
+    Json document = with("/terrain/right_end", "wall", with("/terrain/wall_top_m", 30));
+    for (Json& vertex : document["slide"]["outlines"][0]["outline_m"]) vertex[1] = vertex[1].get<double>() + by;
+    return test::load(document).warnings;
+  };
+  EXPECT_TRUE(raised(0.0).empty());
+  EXPECT_TRUE(raised(0.49).empty());
+  ASSERT_EQ(raised(2.0).size(), 1u);
+  EXPECT_EQ(raised(2.0)[0].pointer, "/slide");
+  // 2 m above a bed that falls by 1 in 2.
+  EXPECT_EQ(raised(2.0)[0].message.find("hangs 1.79 m above the bed"), 0u) << raised(2.0)[0].message;
+}
+
 TEST(Warnings, SoilThatStandsByItsCohesionDoesNotLeak) {
   Json block = with("/terrain/bed_m", {{0, 0}, {100, 0}});
   block["slide"]["outlines"][0]["outline_m"] = {{40, 0}, {60, 0}, {60, 3}, {40, 3}};
