@@ -169,7 +169,7 @@ constexpr Check checks[] = {
      },
      true},
     // The support of the default kernel reaches three spacings to each side: in a thinner flow every particle feels bed
-    // and surface at once. With fewer on average the front moved by up to 22 spacings when the spacing was halved.
+    // and surface at once. With fewer on average the front moved by 2 to 3.4 spacings when the spacing was halved.
     {"thin_flow",
      [](const RunFacts& f) { return f.flow_rows; },
      3.0,

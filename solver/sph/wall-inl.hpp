@@ -87,8 +87,9 @@ struct WallLaw {
   }
 };
 
-/// The most that the deviatoric stress may grow on its way to a wall particle [-]: that of a single row of soil.
-inline constexpr double max_deviator_growth = 6.0;
+/// The most that pressure and deviatoric stress may grow on their way to a wall particle [-]: that of a single row of
+/// soil.
+inline constexpr double max_stress_growth = 6.0;
 
 /// By how much the soil's deviatoric stress grows on its way to a wall particle. Under its own weight a layer carries a
 /// deviator in proportion to its depth, as it carries pressure; extrapolated as a constant its shear would lack that of
@@ -101,7 +102,7 @@ inline constexpr double max_deviator_growth = 6.0;
 /// @param yield_wall, yield_soil  yield stress at these pressures [Pa]
 template <class Real>
 HWY_INLINE Real deviator_growth(Real size, Real p_wall, Real p_soil, Real yield_wall, Real yield_soil) {
-  const Real ratio = min(max(p_wall / p_soil, Real(0.0)), Real(max_deviator_growth));
+  const Real ratio = min(max(p_wall / p_soil, Real(0.0)), Real(max_stress_growth));
   const Real growth = select(p_soil > Real(0.0), ratio, Real(1.0));
   const Real viscous = max(size - yield_soil, Real(0.0)), plastic = size - viscous;
   const Real at_wall = fma(growth, viscous, min(growth * plastic, yield_wall));
@@ -121,8 +122,8 @@ struct WallStress {
 };
 
 /// Shepard interpolation of the soil's stress to a wall particle, pressure with the hydrostatic term of Adami 2012:
-/// p_w = sum_f (p_f + rho_f g.r_wf) W / sum_f W; the deviator as sum_f t_f W / sum_f W, enlarged by deviator_growth;
-/// cohesion and friction as plain averages.
+/// p_w = sum_f (p_f + rho_f g.r_wf) W / sum_f W, at most max_stress_growth sum_f p_f W / sum_f W; the deviator as sum_f
+/// t_f W / sum_f W, enlarged by deviator_growth; cohesion and friction as plain averages.
 template <class Real>
 struct WallStressSum {
   Real weight, p, p_soil, q, c, tan_phi;
@@ -159,9 +160,11 @@ struct WallStressSum {
                                     Mask smooth) const {
     const auto covered = weight > Real(min_kernel_sum);
     const Real inverse = select_or_zero(covered, Real(1.0) / weight);
-    Real p_wall = p * inverse;
-    if (k.numerics.tension_cutoff) p_wall = max(p_wall, Real(0.0));
     const Real p_mean = p_soil * inverse, factor(yield_factor(k.rheology.shear_rate));
+    // The weight of soil that bears no pressure is not added: it would hold the soil up without friction, which is
+    // that of the soil's own stress, and single particles would glide.
+    Real p_wall = min(p * inverse, Real(max_stress_growth) * max(p_mean, Real(0.0)));
+    if (k.numerics.tension_cutoff) p_wall = max(p_wall, Real(0.0));
     const MohrCoulomb<Real> soil{c * inverse, tan_phi * inverse};
     const auto yield = [&](MohrCoulomb<Real> of, Real at)
                            HWY_ATTR { return factor * yield_stress(of.c, of.tan_phi, at); };

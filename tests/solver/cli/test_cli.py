@@ -397,7 +397,7 @@ class Study(Directory):
     def test_another_seed_in_the_same_directory_is_refused(self):
         self.assertEqual(self.study("a", 2, "--no-figures").returncode, 0)
         done = self.study("a", 2, "--no-figures", seed=4)
-        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertEqual(done.returncode, 5, done.stderr)
 
     def test_too_many_failures_end_the_study_with_7(self):
         done = talus("study", self.case(time={"end_s": 100, "fixed_step_s": 0.05}), "--realizations", 3, "--seed", 1, "--out", self.dir / "a", "--no-figures")

@@ -152,7 +152,8 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       tan_phi += weight * s.tan_phi[j];
     }
     if (sum == 0) continue;
-    r.wall_p[q] = k.numerics.tension_cutoff ? std::max(p / sum, 0.0) : p / sum;
+    const double held = std::min(p / sum, 6.0 * std::max(p_soil / sum, 0.0));
+    r.wall_p[q] = k.numerics.tension_cutoff ? std::max(held, 0.0) : held;
     r.wall_density_ratio[q] = compression / sum;
     cohesion /= sum;
     tan_phi /= sum;

@@ -59,6 +59,17 @@ TEST(Wall, ExtrapolationIsExactForHydrostaticPressure) {
               5000 + 2000 * 9.81 * 0.05, 1e-9);
 }
 
+TEST(Wall, HoldsNoSoilUpThatBearsNoPressure) {
+  const auto pressure_at_wall = [](double p) {
+    auto sum = WallStressSum<double>::zero();
+    sum.add(0.7, {{-p, -p, 0}, p, 2000, 0, 0, 0.5}, 9.81 * 0.1, 1e-4);  // 1962 Pa of weight on the way
+    return sum.value(constants(0.1, {0, -9.81}, {}), {0, 1}, {infinity, infinity}, false).p;
+  };
+  EXPECT_EQ(pressure_at_wall(0.0), 0.0);
+  EXPECT_NEAR(pressure_at_wall(300.0), 6.0 * 300.0, 1e-9);
+  EXPECT_NEAR(pressure_at_wall(400.0), 400.0 + 1962.0, 1e-9);
+}
+
 TEST(Wall, DeviatorGrowsWithThePressureUpToTheYieldStress) {
   // size, pressure at the wall and in the soil, yield stress at these
   EXPECT_DOUBLE_EQ(deviator_growth(20.0, 150.0, 100.0, 75.0, 50.0), 1.5);   // does not yield
