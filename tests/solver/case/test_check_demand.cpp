@@ -71,6 +71,8 @@ TEST(CheckDemand, ACorrelationLengthTakesACountableNumberOfModes) {
   ASSERT_EQ(faults.size(), 2u);  // one for each axis
   EXPECT_NE(faults[0].find("half of the variance would take "), std::string::npos) << faults[0];
   const double least = number_after(faults[0], "a length of at least ");
+  EXPECT_NEAR(least, 12.0 / (3.14159 * 1e6), 0.005 * least) << "12 m of slide";
+  EXPECT_NEAR(number_after(faults[0], "would take "), 12.0 / (3.14159 * 1e-16), 1e15);
   EXPECT_EQ(fault_of(field(1.01 * least, "x")), "none");
   EXPECT_NE(fault_of(field(0.99 * least, "x")), "none");
   EXPECT_EQ(faults_of(field(1e-300, "y")).size(), 1u);
