@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "documents.hpp"
 #include "random_field/random_field.hpp"
@@ -103,6 +104,24 @@ TEST(CheckDemand, ValuesThatActAsZeroOrInfinityAreRefused) {
                                   {"/numerics/sound_speed_m_s", 1e-300},
                                   {"/material/cohesion_Pa", 1e300}})
     EXPECT_NE(fault_of(with(at, value)).find("is out of range; unit "), std::string::npos) << at << " " << value;
+}
+
+TEST(CheckDemand, NoNumberOfACaseMayBeEndless) {
+  const std::filesystem::path place = std::filesystem::path(TALUS_SOURCE_DIR) / "schemas/examples/good";
+  const Json full = parse_json(read_text(place / "case-full.json"), "case-full.json");
+  ASSERT_NO_THROW(load_case(full, place));
+  int numbers = 0;
+  const Json flat = full.flatten();
+  for (const auto& [at, value] : flat.items()) {
+    if (!value.is_number()) continue;
+    ++numbers;
+    for (const double endless : {1e300, -1e300}) {
+      Json document = full;
+      document[Json::json_pointer(at)] = endless;
+      EXPECT_THROW(load_case(document, place), ConfigError) << at << " " << endless;
+    }
+  }
+  EXPECT_GT(numbers, 40);
 }
 
 }  // namespace
