@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "documents.hpp"
 #include "random_field/random_field.hpp"
@@ -71,6 +72,8 @@ TEST(CheckDemand, ACorrelationLengthTakesACountableNumberOfModes) {
   ASSERT_EQ(faults.size(), 2u);  // one for each axis
   EXPECT_NE(faults[0].find("half of the variance would take "), std::string::npos) << faults[0];
   const double least = number_after(faults[0], "a length of at least ");
+  EXPECT_NEAR(least, 12.0 / (3.14159 * 1e6), 0.005 * least) << "12 m of slide";
+  EXPECT_NEAR(number_after(faults[0], "would take "), 12.0 / (3.14159 * 1e-16), 1e15);
   EXPECT_EQ(fault_of(field(1.01 * least, "x")), "none");
   EXPECT_NE(fault_of(field(0.99 * least, "x")), "none");
   EXPECT_EQ(faults_of(field(1e-300, "y")).size(), 1u);
@@ -101,6 +104,24 @@ TEST(CheckDemand, ValuesThatActAsZeroOrInfinityAreRefused) {
                                   {"/numerics/sound_speed_m_s", 1e-300},
                                   {"/material/cohesion_Pa", 1e300}})
     EXPECT_NE(fault_of(with(at, value)).find("is out of range; unit "), std::string::npos) << at << " " << value;
+}
+
+TEST(CheckDemand, NoNumberOfACaseMayBeEndless) {
+  const std::filesystem::path place = std::filesystem::path(TALUS_SOURCE_DIR) / "schemas/examples/good";
+  const Json full = parse_json(read_text(place / "case-full.json"), "case-full.json");
+  ASSERT_NO_THROW(load_case(full, place));
+  int numbers = 0;
+  const Json flat = full.flatten();
+  for (const auto& [at, value] : flat.items()) {
+    if (!value.is_number()) continue;
+    ++numbers;
+    for (const double endless : {1e300, -1e300}) {
+      Json document = full;
+      document[Json::json_pointer(at)] = endless;
+      EXPECT_THROW(load_case(document, place), ConfigError) << at << " " << endless;
+    }
+  }
+  EXPECT_GT(numbers, 40);
 }
 
 }  // namespace

@@ -343,3 +343,18 @@ TEST(RunStudy, AProfileOfAnEarlierVersionIsLeftAlone) {  // without a hash
   EXPECT_EQ(s.run(), StudyEnd::finished);
   EXPECT_EQ(s.count("begin "), before);
 }
+
+TEST(RunStudy, AResultWithANumberThatNoRunHasIsRunAgain) {
+  Study s(3);
+  s.run();
+  const fs::path result = s.out / "runs" / "000001.json";
+  for (const auto& [key, value] : {std::pair{"influence_zone_m", Json(1e300)}, {"steps", Json(2'000'000'000'000)}}) {
+    Json changed = Json::parse(content(result));
+    changed.erase("checksum");
+    changed[key] = value;
+    write(result, with_checksum(changed));
+    const int before = s.count("begin 1 ");
+    EXPECT_EQ(s.run(), StudyEnd::finished);
+    EXPECT_EQ(s.count("begin 1 "), before + 1) << key;
+  }
+}
