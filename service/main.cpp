@@ -1,5 +1,6 @@
 // talusd: the queue, its workers and its HTTP side in one process.
 
+#include <malloc.h>
 #include <pthread.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -58,6 +59,14 @@ FileDescriptor wait_for_lock(const std::filesystem::path& path, bool inherited, 
   }
 }
 
+/// Memory of large bodies and documents goes back to the system when it is freed. Without this, the allocator keeps it
+/// in an arena of each thread.
+void return_freed_memory() {
+  mallopt(M_ARENA_MAX, 4);
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  mallopt(M_TRIM_THRESHOLD, 8 << 20);
+}
+
 /// The data directory, made if need be, for this process alone.
 class ClaimedData {
  public:
@@ -107,6 +116,7 @@ int back_up_data(const Config& config, const std::filesystem::path& target) {
 int serve(Config config) {
   const sigset_t stop_signals = hold_stop_signals();
   raise_file_limit();
+  return_freed_memory();
   const Tokens tokens = config.tokens.empty() ? Tokens() : Tokens(config.tokens);
   const DataDirectory data{config.data};
   const ClaimedData claimed(data);
