@@ -8,6 +8,8 @@
 
 #include <exception>
 #include <iostream>
+#include <new>
+#include <system_error>
 #include <thread>
 
 #include "base/json.hpp"
@@ -25,8 +27,8 @@ namespace {
 using namespace talus;
 using namespace talus::service;
 
-/// Blocks the signals that stop talusd in every thread, so that main can wait for them.
-sigset_t hold_stop_signals() {
+/// Blocks the signals for talusd in every thread, so that main can wait for them.
+sigset_t hold_signals() {
   sigset_t set;
   sigemptyset(&set);
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&set, number);
@@ -34,6 +36,20 @@ sigset_t hold_stop_signals() {
   signal(SIGPIPE, SIG_IGN);
   signal(SIGXFSZ, SIG_IGN);
   return set;
+}
+
+/// Many threads that do little: small stacks, and few of the pools in which glibc reserves 64 MiB each. Large blocks
+/// (bodies, answers) go back to the system at once.
+void spare_address_space() {
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+  pthread_attr_t small;
+  if (pthread_attr_init(&small) != 0) return;
+  pthread_attr_setstacksize(&small, std::size_t{2} << 20);
+  pthread_setattr_default_np(&small);
+  pthread_attr_destroy(&small);
+  mallopt(M_ARENA_MAX, 2);
+  mallopt(M_MMAP_THRESHOLD, 256 << 10);
+#endif
 }
 
 /// Allows as many descriptors as possible, for threads, workers and clients.
@@ -57,14 +73,6 @@ FileDescriptor wait_for_lock(const std::filesystem::path& path, bool inherited, 
     if (std::chrono::steady_clock::now() > end) throw IoError(otherwise);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-}
-
-/// Memory of large bodies and documents goes back to the system when it is freed. Without this, the allocator keeps it
-/// in an arena of each thread.
-void return_freed_memory() {
-  mallopt(M_ARENA_MAX, 4);
-  mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  mallopt(M_TRIM_THRESHOLD, 8 << 20);
 }
 
 /// The data directory, made if need be, for this process alone.
@@ -113,11 +121,31 @@ int back_up_data(const Config& config, const std::filesystem::path& target) {
   return static_cast<int>(Exit::ok);
 }
 
+void reload(Tokens& tokens) {
+  if (!tokens.wanted()) return log_info("hangup", {{"why", "there is no tokens file to read again"}});
+  try {
+    tokens.reload();
+    log_info("tokens_reloaded");
+  } catch (const std::exception& e) {
+    log_error("tokens_not_reloaded", {{"why", e.what()}});
+  }
+}
+
+/// @return SIGINT or SIGTERM; SIGHUP reloads the tokens
+int wait_for_stop(const sigset_t& signals, Tokens& tokens) {
+  for (int number = 0;;) {
+    sigwait(&signals, &number);
+    if (number != SIGHUP) return number;
+    reload(tokens);
+  }
+}
+
 int serve(Config config) {
-  const sigset_t stop_signals = hold_stop_signals();
+  const sigset_t signals = hold_signals();
+  spare_address_space();
   raise_file_limit();
-  return_freed_memory();
-  const Tokens tokens = config.tokens.empty() ? Tokens() : Tokens(config.tokens);
+  const auto known = config.tokens.empty() ? std::make_unique<Tokens>() : std::make_unique<Tokens>(config.tokens);
+  Tokens& tokens = *known;
   const DataDirectory data{config.data};
   const ClaimedData claimed(data);
   const auto opened = open_store(config);
@@ -132,9 +160,8 @@ int serve(Config config) {
   for (const Routes& group :
        {discovery_routes(), job_routes(), realization_routes(), event_routes(), operation_routes(), umbridge_routes()})
     routes.insert(routes.end(), group.begin(), group.end());
-  const auto server = make_server(config, !tokens.wanted() && config.public_url.empty(), [&](Incoming request) {
-    return answer(std::move(request), routes, service, tokens);
-  });
+  const auto server =
+      make_server(config, [&](Incoming request) { return admit(std::move(request), routes, service, tokens); });
   config.port = server->bind(config.address, config.port);
   if (config.port == 0)
     throw IoError("cannot listen on " + config.address +
@@ -148,8 +175,7 @@ int serve(Config config) {
   log_info("started",
            {{"url", url}, {"data", data.root.string()}, {"workers", config.workers}, {"threads", config.threads}});
 
-  int number = 0;
-  sigwait(&stop_signals, &number);
+  const int number = wait_for_stop(signals, tokens);
   log_info("stopping", {{"signal", number}});
   stopping = true;
   jobs.stop();
@@ -170,13 +196,29 @@ int run_program(int argc, char** argv) {
   ::umask(027);  // the data of jobs are not readable for every user of this machine
   try {
     if (!options.new_token.empty()) {
-      const auto [token, line] = new_token(options.new_token[0], options.new_token[1]);
+      const std::string expires = options.new_token.size() > 2 ? options.new_token[2] : "";
+      const auto [token, line] = new_token(options.new_token[0], options.new_token[1], expires);
       std::cout << "token: " << token << "\nline for the tokens file: " << line << "\n";
       return static_cast<int>(Exit::ok);
     }
     if (options.adopt) return adopt(options.config);
     if (!options.backup.empty()) return back_up_data(options.config, options.backup);
     return serve(options.config);
+  } catch (const TokensError& e) {
+    std::cerr << "talusd: " << e.what() << "\n";
+    return static_cast<int>(Exit::usage);
+  } catch (const std::bad_alloc&) {
+    std::cerr << "talusd: the memory does not suffice to start; raise its limit (ulimit -v, MemoryMax)\n";
+    return static_cast<int>(Exit::io);
+  } catch (const std::system_error& e) {
+    const bool threads = e.code() == std::errc::resource_unavailable_try_again;
+    std::cerr
+        << "talusd: "
+        << (threads
+                ? "no thread can be started; raise the limits of processes and memory (ulimit -u, TasksMax, ulimit -v)"
+                : e.what())
+        << "\n";
+    return static_cast<int>(Exit::io);
   } catch (const std::exception& e) {
     std::cerr << "talusd: " << e.what() << "\n";
     const bool io = dynamic_cast<const IoError*>(&e) || dynamic_cast<const StorageError*>(&e) ||

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <iostream>
 
+#include "http/hosts.hpp"
+
 namespace talus::service {
 namespace {
 
@@ -22,16 +24,11 @@ void split_listen(const std::string& text, Config& config) {
   config.port = std::stoi(port);
 }
 
-/// Whether only this machine can reach an address.
-bool is_loopback(const std::string& address) {
-  return address == "localhost" || address == "::1" || address.starts_with("127.");
-}
-
 /// The values of the options that Config holds in another form.
 struct RawOptions {
   std::string listen = "127.0.0.1:8080", executor = "local";
   fs::path slurm;
-  double min_disk_mib = 1024.0, body_mib = 4.0, memory_mib = 0.0;
+  double min_disk_mib = 1024.0, body_mib = 4.0, traffic_mib = 64.0, memory_mib = 0.0;
   int time_limit = 6 * 3600, grace = 30, lease = 30;  // [s]
 };
 
@@ -42,6 +39,7 @@ void complete(Config& config, const RawOptions& raw) {
   config.grace = std::chrono::seconds(raw.grace);
   config.lease = std::chrono::seconds(raw.lease);
   config.body_bytes = static_cast<std::size_t>(raw.body_mib * mib);
+  config.traffic_bytes = static_cast<std::size_t>(std::max(raw.traffic_mib, raw.body_mib) * mib);
   config.quotas.disk_bytes = static_cast<std::uint64_t>(raw.min_disk_mib * mib);
   // A negative value, no limit, is for sanitizers, which reserve terabytes of address space.
   if (raw.memory_mib != 0.0) config.memory_bytes = static_cast<std::uint64_t>(std::max(0.0, raw.memory_mib * mib));
@@ -87,6 +85,7 @@ Options read_options(int argc, char** argv) {
   app.add_option("--talus", config.program, "path of the talus program; default: the one beside talusd");
   app.add_option("--models", config.models, "directory of cases to serve over UM-Bridge");
   app.add_option("--public-url", config.public_url, "base URL of absolute links when talusd is behind a proxy");
+  app.add_option("--host", config.hosts, "further host name under which talusd may be addressed; may be repeated");
   with_default("--attempts", config.attempts, "number of crashes after which a run counts as failed")
       ->check(CLI::Range(1, 100));
   with_default("--time-limit", raw.time_limit, "wall-clock limit of a run [s]")->check(CLI::Range(1, 30 * 86400));
@@ -97,9 +96,19 @@ Options read_options(int argc, char** argv) {
   with_default("--memory", raw.memory_mib, "address-space limit of a run [MiB]; 0: from its size; negative: no limit");
   with_default("--nice", config.niceness, "niceness of runs")->check(CLI::Range(0, 19));
   with_default("--max-body", raw.body_mib, "MiB of a request")->check(CLI::Range(0.001, 1024.0));
+  with_default("--max-traffic", raw.traffic_mib, "MiB of all requests and answers in memory")
+      ->check(CLI::Range(1.0, 65536.0));
+  with_default("--max-connections", config.connections,
+               "maximum number of connections; an idle one gives way to a new one")
+      ->check(CLI::Range(16, 65536));
+  with_default("--max-connections-each", config.connections_each, "maximum number of connections from one address")
+      ->check(CLI::Range(1, 65536));
   with_default("--max-streams", config.streams, "maximum number of open event streams")->check(CLI::Range(1, 4096));
-  with_default("--http-threads", config.http_threads, "maximum number of concurrent connections")
-      ->check(CLI::Range(64, 4096));
+  with_default("--max-streams-each", config.streams_each,
+               "maximum number of open event streams per subject, with --tokens")
+      ->check(CLI::Range(1, 4096));
+  with_default("--http-threads", config.http_threads, "maximum number of requests answered at the same time")
+      ->check(CLI::Range(1, 4096));
   with_default("--max-particles", config.quotas.particles, "maximum number of particles of a case");
   with_default("--max-steps", config.quotas.steps, "maximum number of time steps of a run");
   with_default("--max-realizations", config.quotas.realizations, "maximum number of realizations of a job")
@@ -113,9 +122,11 @@ Options read_options(int argc, char** argv) {
                  "copy the queue and all jobs to this new directory, also while talusd runs, then exit");
   app.add_flag("--adopt", options.adopt, "take back jobs that the queue has lost from DATA/orphans, then exit");
   app.add_option("--new-token", options.new_token, "print a new token and its line for the token file, then exit")
-      ->expected(2)
-      ->type_name("submit|read SUBJECT");
-  app.footer("Exit codes: 0 ok, 1 internal, 2 usage, 5 input/output (also when the data directory is in use)");
+      ->expected(2, 3)
+      ->type_name("submit|read SUBJECT [EXPIRES]");
+  app.footer(
+      "Exit codes: 0 ok, 1 internal, 2 usage, 5 input/output (also when the data directory is in use, "
+      "or memory or threads run out)");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

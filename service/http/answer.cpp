@@ -13,8 +13,6 @@
 namespace talus::service {
 namespace {
 
-constexpr std::size_t small_body = std::size_t{64} << 10;
-
 std::vector<std::string> segments_of(const std::string& path) {
   std::vector<std::string> all = split(path.substr(std::min<std::size_t>(1, path.size())), '/');
   if (all.size() > 1 && all.back().empty()) all.pop_back();  // "/jobs/" is "/jobs"
@@ -45,13 +43,14 @@ std::string base_of(const Incoming& request, const Config& config) {
   return scheme + "://" + (host.empty() ? config.address + ":" + std::to_string(config.port) : host);
 }
 
-Answer routed(Exchange& exchange, const Routes& routes) {
+/// The route of a request. @throws Refusal where the token or the role does not suffice, or there is no such route
+FoundRoute route_of(const Exchange& exchange, const Routes& routes) {
   const Incoming& request = exchange.request;
   if (exchange.role == Role::none && !is_open(request.path))
     throw Refusal(reason::unauthorized, "send an Authorization: Bearer header with a valid token");
   FoundRoute found = find_route(routes, request.method, request.path);
   if (found.allow.empty()) throw Refusal(reason::not_found, "no resource exists at this path");
-  if (request.method == "OPTIONS") return {.status = 204, .headers = {{"Allow", found.allow}}};
+  if (request.method == "OPTIONS") return found;
   if (!found.route) {
     Refusal refusal(reason::method_not_allowed, request.method + " is not allowed on this path");
     refusal.allow = found.allow;
@@ -59,11 +58,7 @@ Answer routed(Exchange& exchange, const Routes& routes) {
   }
   if (found.route->role > exchange.role)
     throw Refusal(reason::forbidden, "this token has the role read; submitting needs a token with the role submit");
-  exchange.captured = std::move(found.captured);
-  if (request.body.size() > small_body)
-    exchange.document = std::make_shared<const Shares::Share>(exchange.service.documents.take(
-        exchange.caller(), static_cast<std::int64_t>(request.body.size()), std::chrono::seconds(10)));
-  return found.route->handler(exchange);
+  return found;
 }
 
 /// Adds the entity tag; the answer to a client that has this version is 304 (RFC 9110 13.1.2, weak comparison).
@@ -84,6 +79,29 @@ std::string request_id(const Incoming& request) {
   return is_identifier(given, "-_.") ? given : random_hex(8);
 }
 
+/// How long a client may wait for its answer.
+std::chrono::seconds limit_of(Lane lane, const Config& config) {
+  if (lane == Lane::waiting) return std::chrono::hours(2) + 2 * config.time_limit;  // longer than any of them waits
+  return std::chrono::seconds(lane == Lane::production ? 240 : 120);  // production: two commands, and waiting for both
+}
+
+/// Counts and logs an answer. @return the answer, with the id under which the log has it
+Answer completed(const Exchange& exchange, Answer answer, std::chrono::steady_clock::time_point begin) {
+  const std::string id = request_id(exchange.request);
+  answer.headers.emplace_back("X-Request-Id", id);
+  ++exchange.service.requests;
+  if (answer.status >= 500) ++exchange.service.failures;
+  const std::chrono::duration<double, std::milli> duration = std::chrono::steady_clock::now() - begin;
+  if (!is_open(exchange.request.path))
+    log_info("request", {{"request_id", id},
+                         {"subject", exchange.subject},
+                         {"method", exchange.request.method},
+                         {"path", exchange.request.path},
+                         {"status", answer.status},
+                         {"ms", std::round(1000.0 * duration.count()) / 1000.0}});
+  return answer;
+}
+
 Answer file_problem(int error, const char* what, const std::string& accept) {
   log_error("files", {{"why", what}});
   if (error == ENOSPC || error == EDQUOT) return problem(Refusal(reason::disk_full, "the disk is full"), accept);
@@ -98,10 +116,9 @@ FoundRoute find_route(const Routes& routes, const std::string& method, const std
   for (const Route& route : routes) {
     std::vector<std::string> captured;
     const std::string known = route.method;
-    if (path == "*" ? found.allow.find(known) != std::string::npos
-                    : !matches(segments_of(route.pattern), segments, captured))
-      continue;
-    found.allow += (found.allow.empty() ? "" : ", ") + known + (known == "GET" ? ", HEAD" : "");
+    if (path != "*" && !matches(segments_of(route.pattern), segments, captured)) continue;
+    if (found.allow.find(known) == std::string::npos)
+      found.allow += (found.allow.empty() ? "" : ", ") + known + (known == "GET" ? ", HEAD" : "");
     if (path == "*" || (known != method && !(known == "GET" && method == "HEAD"))) continue;
     found.route = &route;
     found.captured = std::move(captured);
@@ -110,35 +127,41 @@ FoundRoute find_route(const Routes& routes, const std::string& method, const std
   return found;
 }
 
-Answer answer(Incoming request, const Routes& routes, Service& service, const Tokens& tokens) {
+Admission admit(Incoming request, const Routes& routes, Service& service, const Tokens& tokens) {
   const auto begin = std::chrono::steady_clock::now();
-  Exchange exchange{.service = service, .request = std::move(request)};
-  Answer answer;
-  try {
-    exchange.base = base_of(exchange.request, service.config);
-    if (tokens.wanted()) {
-      const auto bearer = tokens.find(exchange.request.header("authorization")).value_or(Bearer{"", Role::none});
-      exchange.subject = bearer.subject;
-      exchange.role = bearer.role;
-    }
-    answer = routed(exchange, routes);
-    add_tag(answer, exchange.request);
-  } catch (...) {
-    answer = problem(std::current_exception(), exchange.request.header("accept"));
+  const auto exchange = std::make_shared<Exchange>(Exchange{.service = service, .request = std::move(request)});
+  exchange->base = base_of(exchange->request, service.config);
+  if (tokens.wanted()) {
+    const auto bearer = tokens.find(exchange->request.header("authorization")).value_or(Bearer{"", Role::none});
+    exchange->subject = bearer.subject;
+    exchange->role = bearer.role;
   }
-  const std::string id = request_id(exchange.request);
-  answer.headers.emplace_back("X-Request-Id", id);
-  ++service.requests;
-  if (answer.status >= 500) ++service.failures;
-  const std::chrono::duration<double, std::milli> duration = std::chrono::steady_clock::now() - begin;
-  if (!is_open(exchange.request.path))
-    log_info("request", {{"request_id", id},
-                         {"subject", exchange.subject},
-                         {"method", exchange.request.method},
-                         {"path", exchange.request.path},
-                         {"status", answer.status},
-                         {"ms", std::round(1000.0 * duration.count()) / 1000.0}});
-  return answer;
+  Admission admission{.subject = exchange->subject};
+  try {
+    FoundRoute found = route_of(*exchange, routes);
+    if (!found.route || exchange->request.method == "OPTIONS") {
+      admission.refusal = completed(*exchange, {.status = 204, .headers = {{"Allow", found.allow}}}, begin);
+      return admission;
+    }
+    exchange->captured = std::move(found.captured);
+    admission.lane = found.route->lane;
+    admission.limit = limit_of(found.route->lane, service.config);
+    admission.handle = [exchange, handler = found.route->handler, begin](std::string body, std::stop_token stop) {
+      exchange->request.body = std::move(body);
+      exchange->request.stop = std::move(stop);
+      Answer answer;
+      try {
+        answer = handler(*exchange);
+        add_tag(answer, exchange->request);
+      } catch (...) {
+        answer = problem(std::current_exception(), exchange->request.header("accept"));
+      }
+      return completed(*exchange, std::move(answer), begin);
+    };
+  } catch (const Refusal& refusal) {
+    admission.refusal = completed(*exchange, problem(refusal, exchange->request.header("accept")), begin);
+  }
+  return admission;
 }
 
 Answer problem(const Refusal& refusal, const std::string& accept) {
@@ -149,7 +172,7 @@ Answer problem(const Refusal& refusal, const std::string& accept) {
   Answer answer = json_answer(body, reason.status);
   if (accept.find("application/problem+json") != std::string::npos) answer.type = "application/problem+json";
   if (!refusal.allow.empty()) answer.headers.emplace_back("Allow", refusal.allow);
-  if (reason == reason::unauthorized) answer.headers.emplace_back("WWW-Authenticate", "Bearer");
+  if (reason == reason::unauthorized) answer.headers.emplace_back("WWW-Authenticate", "Bearer, Basic realm=\"talusd\"");
   if (refusal.retry_after) answer.headers.emplace_back("Retry-After", std::to_string(*refusal.retry_after));
   return answer;
 }

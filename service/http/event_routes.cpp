@@ -22,7 +22,8 @@ Job wait_for_change(const Exchange& exchange, std::int64_t seen, Steady::time_po
     const std::uint64_t count = exchange.service.scheduler.changes().count();
     Job job = job_of(exchange);
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - Steady::now());
-    if (job.version > seen || ended(job.state) || left.count() <= 0 || exchange.service.stopping()) return job;
+    const bool unwanted = exchange.request.stop.stop_requested() || exchange.service.stopping();
+    if (job.version > seen || ended(job.state) || left.count() <= 0 || unwanted) return job;
     exchange.service.scheduler.changes().wait(count, std::min(left, std::chrono::milliseconds(500)));
   }
 }
@@ -30,7 +31,7 @@ Job wait_for_change(const Exchange& exchange, std::int64_t seen, Steady::time_po
 Answer long_poll(Exchange& exchange, std::int64_t seconds) {
   const std::int64_t seen =
       whole_number(exchange.request, "since", 0, std::int64_t{1} << 62).value_or(job_of(exchange).version);
-  const WaitingRequest waiting(exchange.service, poll_instead);
+  const WaitingRequest waiting(exchange, poll_instead);
   const Job job = wait_for_change(exchange, seen, Steady::now() + std::chrono::seconds(seconds));
   Json info = status_info(job, exchange);
   info["version"] = job.version;
@@ -59,7 +60,7 @@ Answer events(Exchange& exchange) {
   if (const auto seconds = whole_number(exchange.request, "wait", 0, longest_wait))
     return long_poll(exchange, *seconds);
   const std::int64_t seen = to_whole(exchange.request.header("last-event-id")).value_or(0);
-  const auto waiting = std::make_shared<WaitingRequest>(exchange.service, poll_instead);
+  const auto waiting = std::make_shared<WaitingRequest>(exchange, poll_instead);
   Answer answer{.type = event_stream};
   if (exchange.request.method != "HEAD")
     answer.stream = [waiting, exchange, seen](const Sink& sink) {
@@ -73,12 +74,14 @@ Answer events(Exchange& exchange) {
 
 }  // namespace
 
-WaitingRequest::WaitingRequest(Service& service, const std::string& advice) : service_(service) {
-  if (++service_.streams <= service_.config.streams) return;
-  --service_.streams;
-  throw Refusal(reason::unavailable, "too many requests are waiting; " + advice, {}, 10);
+WaitingRequest::WaitingRequest(const Exchange& exchange, const std::string& advice)
+    : service_(exchange.service), subject_(exchange.subject) {
+  const Config& config = service_.config;
+  const int each = config.tokens.empty() ? config.streams : config.streams_each;
+  if (!service_.streams.take(subject_, config.streams, each))
+    throw Refusal(reason::unavailable, "too many requests are waiting; " + advice, {}, 10);
 }
 
-Routes event_routes() { return {{"GET", "/jobs/{}/events", Role::read, events}}; }
+Routes event_routes() { return {{"GET", "/jobs/{}/events", Role::read, events, Lane::waiting}}; }
 
 }  // namespace talus::service

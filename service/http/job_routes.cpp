@@ -56,11 +56,16 @@ bool prefers_async(const Incoming& request) {
   return false;
 }
 
+/// No type at all counts as JSON.
+bool is_json(const std::string& content_type) {
+  const std::string type = lower(trimmed(std::string_view(content_type).substr(0, content_type.find(';'))));
+  return type.empty() || type == "application/json" || (type.starts_with("application/") && type.ends_with("+json"));
+}
+
 /// The body of a request for any process, whose outputs are `known`.
 Submission read_submission(const Exchange& exchange, const std::vector<std::string>& known) {
   const Incoming& incoming = exchange.request;
-  const std::string type = lower(incoming.header("content-type"));
-  if (!type.empty() && type.find("json") == std::string::npos)
+  if (!is_json(incoming.header("content-type")))
     throw Refusal(reason::unsupported_media_type, "send the body as Content-Type: application/json");
   const Json body = parse_body(incoming.body);
   Faults faults;
@@ -97,7 +102,7 @@ Answer submit(Exchange& exchange, Submit submit_job, const Submission& submissio
 void wait(double seconds, const Exchange& exchange) {
   if (seconds <= 0.0) return;
   using Clock = std::chrono::steady_clock;
-  const WaitingRequest waiting(exchange.service, "send Prefer: respond-async");
+  const WaitingRequest waiting(exchange, "send Prefer: respond-async");
   const auto end = Clock::now() + std::chrono::duration<double>(seconds);
   while (Clock::now() < end && !exchange.service.stopping() && !exchange.request.stop.stop_requested())
     std::this_thread::sleep_for(
@@ -109,9 +114,12 @@ Answer echo(Exchange& exchange) {
   submission.inputs = read_echo_inputs(submission.inputs);
   if (prefers_async(exchange.request)) return submit(exchange, &Jobs::submit_echo, submission);
   const double pause = submission.inputs.value("pause", 0.0);
+  if (pause > 0.0 && exchange.request.body.size() > large_body)
+    throw Refusal(reason::bad_request, "the inputs are invalid",
+                  {{"/inputs/pause", "needs Prefer: respond-async with a body of more than " +
+                                         std::to_string(large_body >> 10) + " KiB"}});
   Answer answer = results_answer(echo_results(submission.inputs, submission.outputs), submission.raw, exchange.request);
-  submission = {};
-  exchange.document.reset();  // only the answer is in memory while it waits
+  submission = {};  // only the answer is in memory while it waits
   wait(pause, exchange);
   return answer;
 }
@@ -120,7 +128,6 @@ Answer execute(Exchange& exchange) {
   const std::string& process = exchange.captured[0];
   if (process == "influence-zone")
     return submit(exchange, &Jobs::submit_study, read_submission(exchange, {"histogram", "summary"}));
-  if (process == "echo") return echo(exchange);
   throw Refusal(reason::no_such_process, "there is no process with this ID; GET /processes lists them");
 }
 
@@ -214,7 +221,8 @@ Answer dismiss(Exchange& exchange) {
 }  // namespace
 
 Routes job_routes() {
-  return {{"POST", "/processes/{}/execution", Role::submit, execute},
+  return {{"POST", "/processes/{}/execution", Role::submit, execute, Lane::production},
+          {"POST", "/processes/echo/execution", Role::submit, echo, Lane::waiting},
           {"GET", "/jobs", Role::read, list_jobs},
           {"GET", "/jobs/{}", Role::read, [](Exchange& e) { return json_answer(status_info(job_of(e), e)); }},
           {"DELETE", "/jobs/{}", Role::submit, dismiss},

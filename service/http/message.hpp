@@ -1,6 +1,7 @@
 #pragma once
 // Request and answer as the handlers see them, independent of the HTTP library.
 
+#include <chrono>
 #include <exception>
 #include <functional>
 #include <map>
@@ -49,6 +50,28 @@ struct Answer {
   std::function<void(const Sink&)> stream = {};  ///< instead of a body
 };
 
+/// A larger body goes to a lane of its own, which must not wait for anything.
+inline constexpr std::size_t large_body = 256 << 10;
+
+/// Who does the work of a request.
+enum class Lane {
+  immediate,   ///< the thread of the sockets: a constant answer, of which there can be any number
+  operation,   ///< for the operator, whatever else goes on
+  request,     ///< reads and changes of the queue
+  production,  ///< what is computed for the request
+  waiting      ///< waits for something else
+};
+
+/// What is to be done with a request whose body has not been read yet.
+struct Admission {
+  /// Called once, with the body, from another thread; does not throw.
+  std::function<Answer(std::string body, std::stop_token stop)> handle = {};
+  std::optional<Answer> refusal = {};  ///< instead: the answer, without the body
+  Lane lane = Lane::request;
+  std::string subject = {};
+  std::chrono::seconds limit{120};  ///< until the answer
+};
+
 struct Service;
 
 /// A request being handled, its sender, and the captured parts of the path.
@@ -58,8 +81,7 @@ struct Exchange {
   std::vector<std::string> captured = {};  ///< path segments that match the {} of the route
   std::string subject = "local";
   Role role = Role::submit;
-  std::string base = {};                               ///< "http://127.0.0.1:8080": before the path of absolute links
-  std::shared_ptr<const Shares::Share> document = {};  ///< of the memory for what is made of a large body
+  std::string base = {};  ///< "http://127.0.0.1:8080": before the path of absolute links
 
   Caller caller() const { return {.subject = subject, .stop = request.stop}; }
 };

@@ -72,15 +72,15 @@ Answer metrics(Exchange& exchange) {
                   family("talus_http_failures_total", "counter", "Requests answered with 5xx.",
                          {{"", static_cast<double>(service.failures)}}) +
                   family("talus_event_streams", "gauge", "Open event streams.",
-                         {{"", static_cast<double>(service.streams)}})};
+                         {{"", static_cast<double>(service.streams.taken())}})};
 }
 
 }  // namespace
 
 Routes operation_routes() {
-  return {{"GET", "/healthz", Role::none, healthy},
-          {"GET", "/readyz", Role::none, ready},
-          {"GET", "/metrics", Role::read, metrics}};
+  return {{"GET", "/healthz", Role::none, healthy, Lane::immediate},
+          {"GET", "/readyz", Role::none, ready, Lane::operation},
+          {"GET", "/metrics", Role::read, metrics, Lane::operation}};
 }
 
 }  // namespace talus::service

@@ -1,5 +1,5 @@
 #pragma once
-// cpp-httplib behind the guard: it parses requests and writes answers, but routes nothing.
+// The HTTP server: one thread for all sockets, others for the handlers.
 
 #include <functional>
 #include <memory>
@@ -18,12 +18,11 @@ class Server {
   virtual int bind(const std::string& address, int port) = 0;
   /// Serves until stop() is called.
   virtual void serve() = 0;
+  /// Ends the connections and waits for the handlers, of which each is told by its stop token.
   virtual void stop() = 0;
 };
 
-/// @param loopback_names_only  see GuardLimits
-/// @param handle  called for every valid request, concurrently from many threads; must not throw
-std::unique_ptr<Server> make_server(const Config& config, bool loopback_names_only,
-                                    std::function<Answer(Incoming)> handle);
+/// @param admit  called in the thread of the sockets for every valid head: must not wait
+std::unique_ptr<Server> make_server(const Config& config, std::function<Admission(Incoming)> admit);
 
 }  // namespace talus::service

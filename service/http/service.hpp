@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "http/message.hpp"
+#include "http/places.hpp"
 #include "http/tokens.hpp"
 #include "jobs/jobs.hpp"
 
@@ -16,24 +17,23 @@ struct Service {
   Jobs& jobs;
   Scheduler& scheduler;
   std::function<bool()> stopping;
-  std::atomic<int> streams{0};  ///< waiting requests, see WaitingRequest
-  /// Bytes of bodies whose documents are in memory; a document may take more than ten times as much.
-  Shares documents{"requests with large bodies", 2 * static_cast<std::int64_t>(config.body_bytes),
-                   static_cast<std::int64_t>(config.body_bytes), config.http_threads / 4};
+  Places streams{};                                    ///< of waiting requests, see WaitingRequest
   std::atomic<std::int64_t> requests{0}, failures{0};  ///< all answered requests; those with 5xx
 };
 
 /// Counts a request that waits while this object exists.
 class WaitingRequest {
  public:
-  /// @throws Refusal unavailable, with advice, where --max-streams of them wait already
-  WaitingRequest(Service& service, const std::string& advice);
-  ~WaitingRequest() { --service_.streams; }
+  /// @throws Refusal unavailable, with advice, where --max-streams of them wait already, or --max-streams-each of the
+  /// subject
+  WaitingRequest(const Exchange& exchange, const std::string& advice);
+  ~WaitingRequest() { service_.streams.give_back(subject_); }
   WaitingRequest(const WaitingRequest&) = delete;
   WaitingRequest& operator=(const WaitingRequest&) = delete;
 
  private:
   Service& service_;
+  std::string subject_;
 };
 
 using Handler = Answer (*)(Exchange&);
@@ -43,6 +43,7 @@ struct Route {
   const char* pattern;  ///< "/jobs/{}/results": {} stands for one segment
   Role role;            ///< minimum role of the token
   Handler handler;
+  Lane lane = Lane::request;
 };
 
 using Routes = std::vector<Route>;
@@ -53,7 +54,8 @@ struct FoundRoute {
   std::vector<std::string> captured = {};
   std::string allow = {};  ///< methods allowed on the path; empty: no such path
 };
-/// HEAD is answered by the handler of GET. Path "*" is the server: it allows what any path does, and has no handler.
+/// HEAD is answered by the handler of GET; of several routes that match, the last one counts. Path "*" is the server:
+/// it allows what any path does, and has no handler.
 FoundRoute find_route(const Routes& routes, const std::string& method, const std::string& path);
 
 Routes discovery_routes();    ///< /, /conformance, /api, /processes
@@ -63,7 +65,8 @@ Routes event_routes();        ///< /jobs/{}/events
 Routes operation_routes();    ///< /healthz, /readyz, /metrics
 Routes umbridge_routes();     ///< /Info, /Evaluate, ...
 
-/// All stages of a request: token, route, handler, problem, ETag, log line.
-Answer answer(Incoming request, const Routes& routes, Service& service, const Tokens& tokens);
+/// The stages of a request before its body is read (token, route), and after (handler, problem, ETag, log line).
+/// @param request  without its body
+Admission admit(Incoming request, const Routes& routes, Service& service, const Tokens& tokens);
 
 }  // namespace talus::service

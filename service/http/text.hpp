@@ -42,6 +42,23 @@ inline std::string lower(std::string_view text) {
   return out;
 }
 
+/// RFC 3986 2.1: each "%41" is the byte "A"; what is no such code stands for itself.
+/// @param form  "+" is a blank, as in queries
+inline std::string percent_decoded(std::string_view text, bool form) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned byte = 0;
+    const char* digits = text.data() + i + 1;
+    if (text[i] == '%' && i + 2 < text.size() && std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
+      out += static_cast<char>(byte);
+      i += 2;
+    } else {
+      out += form && text[i] == '+' ? ' ' : text[i];
+    }
+  }
+  return out;
+}
+
 /// The whole number that the text spells; nothing where it is not one.
 inline std::optional<std::int64_t> to_whole(std::string_view text) {
   std::int64_t value = 0;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "executor/slurm_config.hpp"
 
@@ -32,7 +33,7 @@ struct Config {
   std::filesystem::path tokens;   ///< empty: no tokens, loopback only
   std::string address = "127.0.0.1";
   int port = 8080;                             ///< 0: any free one
-  std::string public_url;                      ///< of absolute links; empty: from the Host header
+  std::string public_url;                      ///< of absolute links; empty: by the name in the Host header
   std::optional<executor::SlurmConfig> slurm;  ///< unset: runs are processes of this machine
   int workers = 1;                             ///< runs at a time on this machine
   int threads = 1;                             ///< of each run
@@ -43,10 +44,15 @@ struct Config {
   std::chrono::seconds grace{30};             ///< for workers to checkpoint when talusd is asked to stop
   std::optional<std::uint64_t> memory_bytes;  ///< address space of one run; unset: from its size; 0: no limit
   std::uint64_t file_bytes = std::uint64_t{4} << 30;
-  int http_threads = 256;
-  std::size_t body_bytes = std::size_t{4} << 20;
-  int streams = 64;                                 ///< event streams and long polls at a time
-  std::chrono::milliseconds request_limit{15'000};  ///< for a client to send its request
+  std::vector<std::string> hosts;                     ///< further names under which the service is addressed
+  int connections = 1024;                             ///< at a time
+  int connections_each = 256;                         ///< of them, from one address
+  int http_threads = 16;                              ///< handlers of ordinary requests at a time
+  std::size_t body_bytes = std::size_t{4} << 20;      ///< of one request
+  std::size_t traffic_bytes = std::size_t{64} << 20;  ///< bodies and answers in memory, of all requests
+  int streams = 64;                                   ///< event streams, long polls and waits at a time
+  int streams_each = 32;                              ///< of them, of one subject, where there are tokens
+  std::chrono::milliseconds request_limit{15'000};    ///< for a client to send the head of its request
   Quotas quotas;
 };
 

@@ -62,7 +62,7 @@ class Authorisation(ServiceTest):
                 reply = self.daemon.request(method, path, body, token=self.tokens.get(who))
                 self.assertEqual(reply.status, status, (method, path, who, reply.body))
                 if status == 401:
-                    self.assertEqual(reply.headers["WWW-Authenticate"], "Bearer")
+                    self.assertEqual(reply.headers["WWW-Authenticate"], 'Bearer, Basic realm="talusd"')
         self.assertEqual(self.daemon.get("/jobs", token=self.tokens["ben"]).json["jobs"], [])
         self.assertEqual(
             [j["jobID"] for j in self.daemon.get("/jobs", token=self.tokens["anna-reads"]).json["jobs"]], [job]

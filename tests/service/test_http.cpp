@@ -1,7 +1,9 @@
 // Problems, routes, tokens, options.
 
 #include <gtest/gtest.h>
+#include <openssl/evp.h>
 
+#include <filesystem>
 #include <fstream>
 #include <set>
 
@@ -88,16 +90,32 @@ TEST(Routes, AreFoundByMethodAndPath) {
   EXPECT_EQ(wrong.allow, "GET, HEAD, DELETE, OPTIONS");
   EXPECT_EQ(find_route(routes, "GET", "/jobs/a/b").allow, "");
   EXPECT_EQ(find_route(routes, "GET", "/jobs").allow, "");
+  const Routes two = {{"POST", "/processes/{}/execution", Role::read, handler},
+                      {"POST", "/processes/echo/execution", Role::read, handler}};
+  EXPECT_EQ(find_route(two, "POST", "/processes/echo/execution").route, &two[1]);
+  EXPECT_EQ(find_route(two, "POST", "/processes/echo/execution").allow, "POST, OPTIONS");
+  EXPECT_EQ(find_route(two, "POST", "/processes/other/execution").route, &two[0]);
   const FoundRoute server = find_route(routes, "OPTIONS", "*");
   EXPECT_FALSE(server.route);
   EXPECT_EQ(server.allow, "GET, HEAD, DELETE, OPTIONS");
+}
+
+/// In base64 (RFC 4648 4).
+std::string base64(const std::string& text) {
+  std::string out(4 * ((text.size() + 2) / 3) + 1, '\0');
+  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(out.data()), reinterpret_cast<const unsigned char*>(text.data()),
+                  static_cast<int>(text.size()));
+  out.pop_back();
+  return out;
 }
 
 TEST(Tokens, AreFoundByTheirHash) {
   const test::TemporaryDirectory directory;
   const auto [token, line] = new_token("submit", "anna");
   EXPECT_EQ(line.find(token), std::string::npos);
-  std::ofstream(directory / "tokens") << "# people\n" << line << "\n" << new_token("read", "ben").second << " # ben\n";
+  std::ofstream(directory / "tokens") << "# people\n\n"
+                                      << line << "\n"
+                                      << new_token("read", "ben").second << " # ben\n";
   const Tokens tokens(directory / "tokens");
   ASSERT_TRUE(tokens.find("Bearer " + token));
   EXPECT_EQ(tokens.find("Bearer " + token)->subject, "anna");
@@ -110,18 +128,70 @@ TEST(Tokens, AreFoundByTheirHash) {
     EXPECT_FALSE(tokens.find(bad)) << bad;
 }
 
+TEST(Tokens, MayBeThePasswordOfBasic) {  // RFC 7617 2
+  const test::TemporaryDirectory directory;
+  const auto [token, line] = new_token("submit", "anna");
+  std::ofstream(directory / "tokens") << line << "\n";
+  const Tokens tokens(directory / "tokens");
+  for (const char* user : {"anna", "", "an", "ann"}) {  // with every number of "=" at the end
+    ASSERT_TRUE(tokens.find("Basic " + base64(user + (":" + token)))) << user;
+    EXPECT_EQ(tokens.find("basic " + base64(user + (":" + token)))->subject, "anna");
+  }
+  for (const std::string& bad :
+       std::vector<std::string>{"Basic", "Basic ", "Basic " + base64(token), "Basic " + base64("anna:" + token + "x"),
+                                "Basic " + base64("anna:"), "Basic ====", "Basic a",
+                                "Basic " + base64("anna:x:" + token), "Bearer " + base64("anna:" + token)})
+    EXPECT_FALSE(tokens.find(bad)) << bad;
+}
+
+TEST(Tokens, Expire) {
+  const test::TemporaryDirectory directory;
+  const auto [token, line] = new_token("read", "anna", "2027-01-31T00:00:00Z");
+  std::ofstream(directory / "tokens") << line << "\n";
+  Milliseconds now = *utc_time("2027-01-30T23:59:59.999Z");
+  const Tokens tokens(directory / "tokens", [&now] { return now; });
+  EXPECT_TRUE(tokens.find("Bearer " + token));
+  ++now;
+  EXPECT_FALSE(tokens.find("Bearer " + token));
+}
+
+TEST(Tokens, AreReadAgainUnlessTheFileIsWrong) {
+  const test::TemporaryDirectory directory;
+  const auto [old_token, old_line] = new_token("submit", "anna");
+  const auto [token, line] = new_token("submit", "anna");
+  std::ofstream(directory / "tokens") << old_line << "\n";
+  Tokens tokens(directory / "tokens");
+  std::ofstream(directory / "tokens") << "nonsense\n";
+  EXPECT_THROW(tokens.reload(), TokensError);
+  EXPECT_TRUE(tokens.find("Bearer " + old_token));
+  std::ofstream(directory / "tokens") << line << "\n";
+  tokens.reload();
+  EXPECT_FALSE(tokens.find("Bearer " + old_token));
+  EXPECT_TRUE(tokens.find("Bearer " + token));
+}
+
 TEST(Tokens, ABadFileIsRefused) {
   const test::TemporaryDirectory directory;
+  const std::string good = "submit anna " + std::string(64, 'a');
   const auto refused = [&](const std::string& text) {
     std::ofstream(directory / "tokens") << text;
-    EXPECT_THROW(Tokens(directory / "tokens"), std::runtime_error) << text;
+    EXPECT_THROW(Tokens(directory / "tokens"), TokensError) << text;
   };
   refused("");
   refused("submit anna secret\n");
+  refused("submit\n");
   refused("admin anna " + std::string(64, 'a') + "\n");
   refused("submit a/b " + std::string(64, 'a') + "\n");
-  EXPECT_THROW(Tokens(directory / "none"), std::runtime_error);
-  EXPECT_THROW(new_token("submit", "a b"), std::runtime_error);
+  refused(good + " tomorrow\n");
+  refused(good + " 2027-01-31T00:00:00Z x\n");
+  EXPECT_THROW(Tokens(directory / "none"), IoError);
+  EXPECT_THROW(new_token("submit", "a b"), TokensError);
+  EXPECT_THROW(new_token("submit", "anna", "2027"), TokensError);
+  std::ofstream(directory / "tokens") << good << "\n";
+  EXPECT_NO_THROW(Tokens(directory / "tokens"));
+  std::filesystem::permissions(directory / "tokens", std::filesystem::perms::others_write,
+                               std::filesystem::perm_options::add);
+  EXPECT_THROW(Tokens(directory / "tokens"), TokensError);
 }
 
 TEST(Digest, KnownValues) {  // FIPS 180-2, appendix B.1
@@ -143,6 +213,7 @@ TEST(Options, OtherThanLoopbackNeedsTokens) {
   EXPECT_FALSE(options({"--data", "d", "--talus", "/bin/true"}).exit);
   EXPECT_FALSE(options({"--data", "d", "--talus", "/bin/true", "--listen", "[::1]:0"}).exit);
   EXPECT_EQ(options({"--data", "d", "--talus", "/bin/true", "--listen", "0.0.0.0:80"}).exit, 2);
+  EXPECT_EQ(options({"--data", "d", "--talus", "/bin/true", "--listen", "127.evil:80"}).exit, 2);
   EXPECT_FALSE(options({"--data", "d", "--talus", "/bin/true", "--listen", "0.0.0.0:80", "--tokens", "t"}).exit);
   EXPECT_EQ(options({"--talus", "/bin/true"}).exit, 2);
   EXPECT_EQ(options({"--data", "d", "--talus", "/none"}).exit, 2);

@@ -25,7 +25,7 @@ class Shares(ServiceTest):
         document = case()
         document["random_field"]["terms"] = 2
         (models / "slope.json").write_text(json.dumps(document))
-        self.start("--talus", fake, "--http-threads", 64, "--models", models)  # 16 requests of one subject may wait
+        self.start("--talus", fake, "--max-streams", 16, "--models", models)
 
     def made(self):
         return len(self.runs.read_text().split())
@@ -96,12 +96,16 @@ class Shares(ServiceTest):
 
         self.wait_until(small)
 
-    def test_large_documents_are_in_memory_one_after_the_other(self):
-        with concurrent.futures.ThreadPoolExecutor(24) as pool:
-            replies = list(pool.map(lambda _: self.daemon.post("/processes/echo/execution", OBJECTS), range(24)))
-        self.assertLessEqual({reply.status for reply in replies}, {400, 503})
-        self.assertIn(400, {reply.status for reply in replies})
-        self.assertEqual(self.daemon.get("/healthz").status, 200)
+    def test_documents_of_many_objects(self):
+        self.problem(self.daemon.post("/processes/echo/execution", OBJECTS), 400)
+        document = self.problem(self.daemon.post("/processes/echo/execution", OBJECTS[:-1] + "," + OBJECTS[1:]), 400)
+        self.assertEqual(document["errors"][0]["message"], "the document holds more than 500000 values")
+
+    def test_a_large_echo_does_not_wait(self):
+        """While it waits, it would keep other large requests from the threads that read them."""
+        body = {"inputs": {"s": "x", "pause": 60, "o": {"a": ["y" * 4000] * 100}}}
+        document = self.problem(self.daemon.post("/processes/echo/execution", body), 400)
+        self.assertEqual([fault["pointer"] for fault in document["errors"]], ["/inputs/pause"])
 
 
 if __name__ == "__main__":
