@@ -1,31 +1,36 @@
 #include "http/lanes.hpp"
 
 #include <algorithm>
+#include <new>
 #include <system_error>
 
 namespace talus::service {
+
+WorkLane::WorkLane(LaneLimits limits) : limits_(limits) {
+  threads_.emplace_back([this] { serve(); });
+}
 
 bool WorkLane::submit(const std::string& subject, std::function<void()> work) {
   const std::lock_guard lock(lock_);
   if (taken_ >= limits_.places) return false;
   if (const auto at = shares_.find(subject); at != shares_.end() && at->second.places >= limits_.places_each)
     return false;
-  if (!has_thread_for_one_more()) return false;
   waiting_.push_back({subject, std::move(work)});
   ++shares_[subject].places;
   ++taken_;
+  add_thread_if_needed();
   changed_.notify_one();
   return true;
 }
 
-/// Called with the lock held. A thread that cannot be had is no fault as long as there is another one.
-bool WorkLane::has_thread_for_one_more() {
-  if (idle_ > waiting_.size() || threads_.size() >= limits_.threads) return true;
+/// Called with the lock held. A thread that the system does not give is no fault: there is another one.
+void WorkLane::add_thread_if_needed() {
+  if (idle_ >= waiting_.size() || threads_.size() >= limits_.threads) return;
   try {
     threads_.emplace_back([this] { serve(); });
   } catch (const std::system_error&) {
+  } catch (const std::bad_alloc&) {
   }
-  return !threads_.empty();
 }
 
 void WorkLane::serve() {

@@ -21,13 +21,14 @@ struct LaneLimits {
 /// A queue of work and its threads. The next to start is the work of the subject with the least under way. Thread-safe.
 class WorkLane {
  public:
-  explicit WorkLane(LaneLimits limits) : limits_(limits) {}
+  /// Starts one thread. @throws std::system_error where the system gives none
+  explicit WorkLane(LaneLimits limits);
   ~WorkLane() { join(); }
   WorkLane(const WorkLane&) = delete;
   WorkLane& operator=(const WorkLane&) = delete;
 
   /// Does `work` soon, in another thread. @param work  must not throw
-  /// @return false where there is no place, or the system gives not a single thread
+  /// @return false where there is no place
   bool submit(const std::string& subject, std::function<void()> work);
   /// Does what is left, and ends the threads. Nothing may be submitted any more.
   void join();
@@ -41,7 +42,7 @@ class WorkLane {
     std::size_t places = 0, running = 0;
   };
 
-  bool has_thread_for_one_more();
+  void add_thread_if_needed();
   void serve();
   Entry take();
 

@@ -111,9 +111,10 @@ void Database::migrate() {
   });
 }
 
-Database::Reader::Reader(Database& from) : owner(from) {
+Database::Reader::Reader(Database& from, For whom) : owner(from) {
+  const std::size_t kept = whom == For::operation ? 0 : 1;
   std::unique_lock lock(owner.pool_lock_);
-  owner.returned_.wait(lock, [&] { return !owner.readers_.empty(); });
+  owner.returned_.wait(lock, [&] { return owner.readers_.size() > kept; });
   connection = std::move(owner.readers_.back());
   owner.readers_.pop_back();
 }
@@ -123,7 +124,7 @@ Database::Reader::~Reader() {
     const std::lock_guard lock(owner.pool_lock_);
     owner.readers_.push_back(std::move(connection));
   }
-  owner.returned_.notify_one();
+  owner.returned_.notify_all();  // the first to wait may not be the one that may have it
 }
 
 void Database::throw_storage_error(const SQLite::Exception& e) {

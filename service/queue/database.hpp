@@ -44,16 +44,20 @@ class Database {
     });
   }
 
+  /// Who waits for a connection that reads.
+  enum class For { everyone, operation };
+
   /// Runs `action(SQLite::Database&)` on a connection that only reads.
+  /// @param whom  one of the connections is kept for the operator: everyone else may use all of them up
   template <class Action>
-  auto read(Action action) {
-    const Reader reader(*this);
+  auto read(Action action, For whom = For::everyone) {
+    const Reader reader(*this, whom);
     return translated([&] { return action(*reader.connection); });
   }
 
  private:
   struct Reader {
-    explicit Reader(Database& from);
+    Reader(Database& from, For whom);
     ~Reader();
     Database& owner;
     std::unique_ptr<SQLite::Database> connection;

@@ -119,12 +119,15 @@ std::vector<Job> Store::jobs(const JobFilter& filter) {
 }
 
 std::int64_t Store::open_jobs(const std::optional<std::string>& subject) {
-  return db_.read([&](SQLite::Database& db) {
-    SQLite::Statement query = statement(
-        db, std::string("SELECT COUNT(*) FROM jobs WHERE (?1 IS NULL OR subject = ?1) AND ") + job_is_open, subject);
-    query.executeStep();
-    return query.getColumn(0).getInt64();
-  });
+  return db_.read(
+      [&](SQLite::Database& db) {
+        SQLite::Statement query = statement(
+            db, std::string("SELECT COUNT(*) FROM jobs WHERE (?1 IS NULL OR subject = ?1) AND ") + job_is_open,
+            subject);
+        query.executeStep();
+        return query.getColumn(0).getInt64();
+      },
+      Database::For::operation);
 }
 
 std::set<std::string> Store::job_ids(const std::optional<JobState>& state) {
@@ -137,20 +140,22 @@ std::set<std::string> Store::job_ids(const std::optional<JobState>& state) {
 }
 
 StateCounts Store::state_counts() {
-  return db_.read([&](SQLite::Database& db) {
-    StateCounts counts;
-    const auto read = [&](const char* sql, auto state, auto& counts_of_state) {
-      SQLite::Statement query(db, sql);
-      while (query.executeStep()) {
-        std::int64_t count = 0;
-        Row(query) >> state >> count;
-        counts_of_state[static_cast<std::size_t>(state)] = count;
-      }
-    };
-    read("SELECT state, COUNT(*) FROM jobs GROUP BY state", JobState{}, counts.jobs);
-    read("SELECT state, COUNT(*) FROM runs GROUP BY state", RunState{}, counts.runs);
-    return counts;
-  });
+  return db_.read(
+      [&](SQLite::Database& db) {
+        StateCounts counts;
+        const auto read = [&](const char* sql, auto state, auto& counts_of_state) {
+          SQLite::Statement query(db, sql);
+          while (query.executeStep()) {
+            std::int64_t count = 0;
+            Row(query) >> state >> count;
+            counts_of_state[static_cast<std::size_t>(state)] = count;
+          }
+        };
+        read("SELECT state, COUNT(*) FROM jobs GROUP BY state", JobState{}, counts.jobs);
+        read("SELECT state, COUNT(*) FROM runs GROUP BY state", RunState{}, counts.runs);
+        return counts;
+      },
+      Database::For::operation);
 }
 
 void Store::note_pending_reason(std::int64_t job, const std::string& why) {

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Clients that take what they can, and how /healthz fares meanwhile: attacks.py TALUSD SOURCE [SECONDS] prints a table.
+"""Clients that take what they can, and how the operator fares meanwhile: attacks.py TALUSD SOURCE [SECONDS] prints a table.
 
-/healthz is asked ten times a second over new connections; an answer that takes over 10 s counts as 10 s. The clients run
-in a process of their own.
+/healthz is asked ten times a second over new connections, and as often /readyz and /metrics in turn; what is not answered
+with 200 within 10 s counts as 10 s. The clients run in a process of their own.
 """
 
 import asyncio
@@ -103,35 +103,39 @@ ECHO = "/processes/echo/execution"
 EMPTY_OBJECTS = b"[" + b",".join([b"{}"] * 100_000) + b"]"
 LONG_STRING = b'{"inputs": {"s": "' + b"a" * (4 * MIB - 100) + b'"}}'
 
-#: name -> (number of clients, what one does, given the port)
+SLOW_HEAD = b"GET / HTTP/1.1\r\nHost: localhost\r\nX: "
+PAUSE = b'{"inputs": {"s": "a", "pause": 60}}'
+
+#: name -> (number of clients, what one does, given the port and a job that has ended)
 ATTACKS = {
     "none": (0, None),
-    "keep-alive, a request each 3 s": (256, lambda port: held(port, get("/healthz"), 3)),
-    "half a head, then a byte a second": (300, lambda port: dripping(port, b"GET / HTTP/1.1\r\nHost: localhost\r\nX: ")),
-    "a slow body": (300, lambda port: dripping(port, post(ECHO, b"{", 100_000))),
-    "connections that send nothing": (300, silent),
-    "answers that are not read": (300, lambda port: held(port, get("/api") * 50, 1, reads=False)),
-    "connect, ask, leave": (300, lambda port: flooding(port, get("/jobs"))),
-    "bodies of 300 kB of {}, gone at once": (300, lambda port: flooding(port, post("/ModelInfo", EMPTY_OBJECTS))),
-    "synchronous waits of 60 s": (300, lambda port: patient(port, post(ECHO, b'{"inputs": {"s": "a", "pause": 60}}'))),
-    "bodies of 4 MiB": (200, lambda port: patient(port, post(ECHO, LONG_STRING))),
+    "keep-alive, a request each 3 s": (256, lambda port, job: held(port, get("/healthz"), 3)),
+    "half a head, then a byte a second": (300, lambda port, job: dripping(port, SLOW_HEAD)),
+    "a slow body": (300, lambda port, job: dripping(port, post(ECHO, b"{", 100_000))),
+    "connections that send nothing": (300, lambda port, job: silent(port)),
+    "answers that are not read": (300, lambda port, job: held(port, get("/api") * 50, 1, reads=False)),
+    "connect, ask, leave": (300, lambda port, job: flooding(port, get("/jobs"))),
+    "bodies of 300 kB of {}, gone at once": (300, lambda port, job: flooding(port, post("/ModelInfo", EMPTY_OBJECTS))),
+    "synchronous waits of 60 s": (300, lambda port, job: patient(port, post(ECHO, PAUSE))),
+    "event streams that are not read": (300, lambda port, job: held(port, get(f"/jobs/{job}/events"), 1, reads=False)),
+    "the profile of a run": (300, lambda port, job: patient(port, get(f"/jobs/{job}/realizations/0/profile"))),
+    "bodies of 4 MiB": (200, lambda port, job: patient(port, post(ECHO, LONG_STRING))),
 }
 
 
-def attack(name, port):
+def attack(name, port, job):
     async def run():
         number, client = ATTACKS[name]
-        tasks = [asyncio.create_task(client(port)) for _ in range(number)]
-        await asyncio.gather(*tasks)
+        await asyncio.gather(*(client(port, job) for _ in range(number)))
 
     with contextlib.suppress(KeyboardInterrupt):
         asyncio.run(run())
 
 
 @contextlib.contextmanager
-def under(name, port):
+def under(name, port, job):
     """While the body runs, the attack goes on."""
-    attacker = multiprocessing.Process(target=attack, args=(name, port), daemon=True)
+    attacker = multiprocessing.Process(target=attack, args=(name, port, job), daemon=True)
     attacker.start()
     try:
         time.sleep(1.0)
@@ -141,18 +145,20 @@ def under(name, port):
         attacker.join()
 
 
-def healthz(port, patience=PATIENCE):
-    """@return how long an answer took [s], at most `patience`; whether it came"""
+def ask(port, path="/healthz", patience=PATIENCE):
+    """@return how long the answer took [s]; at least `patience` where it was none"""
     begin = time.monotonic()
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=patience)
     try:
-        connection.request("GET", "/healthz")
-        good = connection.getresponse().status == 200
-    except OSError:
+        connection.request("GET", path)
+        answer = connection.getresponse()
+        answer.read()
+        good = answer.status == 200
+    except (OSError, http.client.HTTPException):
         good = False
     finally:
         connection.close()
-    return (time.monotonic() - begin if good else patience), good
+    return time.monotonic() - begin if good else patience
 
 
 def peak_memory(pid):
@@ -164,28 +170,35 @@ def peak_memory(pid):
 
 
 def measure(port, seconds):
-    """@return sorted times of /healthz [s]"""
-    times, end = [], time.monotonic() + seconds
+    """@return sorted times [s] of /healthz, and of /readyz and /metrics"""
+    health, others, end = [], [], time.monotonic() + seconds
     while time.monotonic() < end:
-        times.append(healthz(port)[0])
+        health.append(ask(port))
+        others.append(ask(port, ("/readyz", "/metrics")[len(others) % 2]))
         time.sleep(0.1)
-    return sorted(times)
+    return sorted(health), sorted(others)
 
 
-def table(daemon_class, seconds):
-    print("| clients | what they do | /healthz p50 [ms] | p99 [ms] | asked | peak memory [MB] |\n|---|---|---|---|---|---|")
+def table(daemon_class, study, seconds):
+    print("| clients | what they do | /healthz p50, p99 [ms] | /readyz, /metrics p50, p99 [ms] | asked | peak memory [MB] |")
+    print("|---|---|---|---|---|---|")
     for name, (number, _) in ATTACKS.items():
         with tempfile.TemporaryDirectory() as directory:
             daemon = daemon_class(pathlib.Path(directory) / "data")
-            with under(name, daemon.port) if number else contextlib.nullcontext():
-                times = measure(daemon.port, seconds)
-            p50, p99 = (1000 * times[round(share * (len(times) - 1))] for share in (0.5, 0.99))
+            job = daemon.submit(study(1))
+            daemon.wait_for(job)
+            with under(name, daemon.port, job) if number else contextlib.nullcontext():
+                health, others = measure(daemon.port, seconds)
+            quantiles = [
+                f"{1000 * times[round(share * (len(times) - 1))]:.0f}" for times in (health, others) for share in (0.5, 0.99)
+            ]
             memory = peak_memory(daemon.process.pid)
-            print(f"| {number} | {name} | {p50:.0f} | {p99:.0f} | {len(times)} | {memory:.0f} |", flush=True)
+            print(f"| {number} | {name} | {quantiles[0]}, {quantiles[1]} | {quantiles[2]}, {quantiles[3]} | {len(health)} |"
+                  f" {memory:.0f} |", flush=True)
             daemon.kill()
 
 
 if __name__ == "__main__":
-    from daemon import Daemon
+    from daemon import Daemon, study
 
-    table(Daemon, float(sys.argv[3]) if len(sys.argv) > 3 else 20.0)
+    table(Daemon, study, float(sys.argv[3]) if len(sys.argv) > 3 else 20.0)
