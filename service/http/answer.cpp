@@ -13,8 +13,6 @@
 namespace talus::service {
 namespace {
 
-constexpr std::size_t small_body = std::size_t{64} << 10;
-
 std::vector<std::string> segments_of(const std::string& path) {
   std::vector<std::string> all = split(path.substr(std::min<std::size_t>(1, path.size())), '/');
   if (all.size() > 1 && all.back().empty()) all.pop_back();  // "/jobs/" is "/jobs"
@@ -83,8 +81,8 @@ std::string request_id(const Incoming& request) {
 
 /// How long a client may wait for its answer.
 std::chrono::seconds limit_of(Lane lane, const Config& config) {
-  if (lane == Lane::waiting) return std::chrono::hours(2);  // longer than any of them waits
-  return std::chrono::seconds(120) + (lane == Lane::production ? config.time_limit : std::chrono::seconds(0));
+  if (lane == Lane::waiting) return std::chrono::hours(2) + 2 * config.time_limit;  // longer than any of them waits
+  return std::chrono::seconds(lane == Lane::production ? 240 : 120);  // production: two commands, and waiting for both
 }
 
 /// Counts and logs an answer. @return the answer, with the id under which the log has it
@@ -153,9 +151,6 @@ Admission admit(Incoming request, const Routes& routes, Service& service, const 
       exchange->request.stop = std::move(stop);
       Answer answer;
       try {
-        if (const std::string& sent = exchange->request.body; sent.size() > small_body)
-          exchange->document = std::make_shared<const Shares::Share>(exchange->service.documents.take(
-              exchange->caller(), static_cast<std::int64_t>(sent.size()), std::chrono::seconds(10)));
         answer = handler(*exchange);
         add_tag(answer, exchange->request);
       } catch (...) {

@@ -23,7 +23,6 @@ constexpr milliseconds write_limit{20000};  ///< for the client to accept the re
 constexpr milliseconds first_second{1000};  ///< see rank()
 constexpr milliseconds linger_limit{500}, refused_body_limit{2000};
 constexpr std::size_t least_rate = 256 << 10;      ///< of bodies and answers [bytes/s]
-constexpr std::size_t large_body = 256 << 10;      ///< see Lanes::large
 constexpr std::size_t most_read_ahead = 16 << 10;  ///< of the next request while one is handled
 
 milliseconds time_for(std::size_t bytes) { return milliseconds(1000 * bytes / least_rate); }

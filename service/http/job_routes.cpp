@@ -114,9 +114,12 @@ Answer echo(Exchange& exchange) {
   submission.inputs = read_echo_inputs(submission.inputs);
   if (prefers_async(exchange.request)) return submit(exchange, &Jobs::submit_echo, submission);
   const double pause = submission.inputs.value("pause", 0.0);
+  if (pause > 0.0 && exchange.request.body.size() > large_body)
+    throw Refusal(reason::bad_request, "the inputs are invalid",
+                  {{"/inputs/pause", "needs Prefer: respond-async with a body of more than " +
+                                         std::to_string(large_body >> 10) + " KiB"}});
   Answer answer = results_answer(echo_results(submission.inputs, submission.outputs), submission.raw, exchange.request);
-  submission = {};
-  exchange.document.reset();  // only the answer is in memory while it waits
+  submission = {};  // only the answer is in memory while it waits
   wait(pause, exchange);
   return answer;
 }
@@ -218,7 +221,7 @@ Answer dismiss(Exchange& exchange) {
 }  // namespace
 
 Routes job_routes() {
-  return {{"POST", "/processes/{}/execution", Role::submit, execute},
+  return {{"POST", "/processes/{}/execution", Role::submit, execute, Lane::production},
           {"POST", "/processes/echo/execution", Role::submit, echo, Lane::waiting},
           {"GET", "/jobs", Role::read, list_jobs},
           {"GET", "/jobs/{}", Role::read, [](Exchange& e) { return json_answer(status_info(job_of(e), e)); }},

@@ -50,6 +50,9 @@ struct Answer {
   std::function<void(const Sink&)> stream = {};  ///< instead of a body
 };
 
+/// A larger body goes to a lane of its own, which must not wait for anything.
+inline constexpr std::size_t large_body = 256 << 10;
+
 /// Who does the work of a request.
 enum class Lane {
   immediate,   ///< the thread of the sockets: a constant answer, of which there can be any number
@@ -78,8 +81,7 @@ struct Exchange {
   std::vector<std::string> captured = {};  ///< path segments that match the {} of the route
   std::string subject = "local";
   Role role = Role::submit;
-  std::string base = {};                               ///< "http://127.0.0.1:8080": before the path of absolute links
-  std::shared_ptr<const Shares::Share> document = {};  ///< of the memory for what is made of a large body
+  std::string base = {};  ///< "http://127.0.0.1:8080": before the path of absolute links
 
   Caller caller() const { return {.subject = subject, .stop = request.stop}; }
 };

@@ -190,10 +190,10 @@ Routes realization_routes() {
   return {{"GET", "/jobs/{}/histogram", Role::read, histogram},
           {"GET", "/jobs/{}/realizations", Role::read, list_realizations},
           {"GET", "/jobs/{}/realizations/{}", Role::read, one},
-          {"GET", "/jobs/{}/realizations/{}/field", Role::read, field, Lane::production},
-          {"GET", "/jobs/{}/realizations/{}/profile", Role::read, profile, Lane::production},
-          {"POST", "/jobs/{}/retry", Role::submit, retry},
-          {"POST", "/jobs/{}/extend", Role::submit, extend}};
+          {"GET", "/jobs/{}/realizations/{}/field", Role::read, field, Lane::waiting},
+          {"GET", "/jobs/{}/realizations/{}/profile", Role::read, profile, Lane::waiting},
+          {"POST", "/jobs/{}/retry", Role::submit, retry, Lane::production},
+          {"POST", "/jobs/{}/extend", Role::submit, extend, Lane::production}};
 }
 
 }  // namespace talus::service

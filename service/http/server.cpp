@@ -26,7 +26,8 @@ constexpr milliseconds last_words{1000};  ///< for answers to be sent when the s
 constexpr std::string_view no_room =
     "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nRetry-After: 2\r\nConnection: close\r\n\r\n";
 
-constexpr std::size_t spare_waiting = 16;  ///< threads for those that are refused or need not wait
+constexpr std::size_t kinds_of_waiting = 3;  ///< for events and pauses, for fields, for runs; --max-streams of each
+constexpr std::size_t spare_waiting = 16;    ///< threads for those that are refused or need not wait
 
 /// With tokens nobody gets more than half of the places; without, all are one subject.
 LaneLimits lane(std::size_t threads, std::size_t places, bool shared) {
@@ -174,8 +175,8 @@ Lanes::Lanes(const Config& config)
     : operation(lane(1, 128, false)),
       request(lane(static_cast<std::size_t>(config.http_threads), 512, !config.tokens.empty())),
       production(lane(16, 128, !config.tokens.empty())),
-      waiting(lane(static_cast<std::size_t>(config.streams) + spare_waiting,
-                   static_cast<std::size_t>(config.streams) + 128, !config.tokens.empty())),
+      waiting(lane(kinds_of_waiting * static_cast<std::size_t>(config.streams) + spare_waiting,
+                   kinds_of_waiting * static_cast<std::size_t>(config.streams) + 128, !config.tokens.empty())),
       large(lane(2, 32, !config.tokens.empty())) {}
 
 std::unique_ptr<Server> make_server(const Config& config, std::function<Admission(Incoming)> admit) {

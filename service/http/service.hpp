@@ -17,10 +17,7 @@ struct Service {
   Jobs& jobs;
   Scheduler& scheduler;
   std::function<bool()> stopping;
-  Places streams{};  ///< of waiting requests, see WaitingRequest
-  /// Bytes of bodies whose documents are in memory; a document may take more than ten times as much.
-  Shares documents{"requests with large bodies", 2 * static_cast<std::int64_t>(config.body_bytes),
-                   static_cast<std::int64_t>(config.body_bytes), config.http_threads / 4};
+  Places streams{};                                    ///< of waiting requests, see WaitingRequest
   std::atomic<std::int64_t> requests{0}, failures{0};  ///< all answered requests; those with 5xx
 };
 

@@ -160,9 +160,9 @@ Routes umbridge_routes() {
              return json_answer({{"protocolVersion", 1.0}, {"models", models(e.service.config)}});
            }},
           {"POST", "/ModelInfo", Role::read, answer_of<model_info>},
-          {"POST", "/InputSizes", Role::read, answer_of<input_sizes>},
+          {"POST", "/InputSizes", Role::read, answer_of<input_sizes>, Lane::production},
           {"POST", "/OutputSizes", Role::read, answer_of<output_sizes>},
-          {"POST", "/Evaluate", Role::submit, answer_of<evaluate>, Lane::production},
+          {"POST", "/Evaluate", Role::submit, answer_of<evaluate>, Lane::waiting},
           {"POST", "/Gradient", Role::read, answer_of<unsupported>},
           {"POST", "/ApplyJacobian", Role::read, answer_of<unsupported>},
           {"POST", "/ApplyHessian", Role::read, answer_of<unsupported>}};

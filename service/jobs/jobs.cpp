@@ -23,7 +23,7 @@ using std::chrono::seconds;
 constexpr double evaluations_per_second = 15e6;  ///< of a core, see README
 constexpr milliseconds histogram_age{1000};      ///< at most, while the job runs
 constexpr std::size_t profiles_kept = 16;        ///< of a job
-constexpr int commands_at_a_time = 4, commands_of_one = 3, fields_at_a_time = 2;
+constexpr int commands_at_a_time = 4, commands_of_one = 3, commands_waiting = 16, fields_at_a_time = 2;
 constexpr seconds command_limit{60}, profile_limit{3600};
 constexpr seconds patience{60};  ///< of a request for a field or a profile
 constexpr std::size_t max_bytes = std::size_t{256} << 20;
@@ -98,9 +98,10 @@ std::optional<std::string> find_kept(const fs::path& file) {
   return text;
 }
 
-/// What may wait in half of the connections, and of one subject in a quarter.
 Productions::Limits limits_of(const Config& config, int at_a_time) {
-  return {.at_a_time = at_a_time, .waiting = config.http_threads / 2, .waiting_of_one = config.http_threads / 4};
+  return {.at_a_time = at_a_time,
+          .waiting = config.streams,
+          .waiting_of_one = config.tokens.empty() ? config.streams : config.streams_each};
 }
 
 /// @throws Refusal internal unless the command succeeded
@@ -126,7 +127,8 @@ Jobs::Jobs(const Config& config, Store& store, Scheduler& scheduler)
       data_watch_(data_),
       store_(store),
       scheduler_(scheduler),
-      commands_("requests that check or change a study", commands_at_a_time, commands_of_one, config.http_threads / 4),
+      commands_("requests that check or change a study", commands_at_a_time,
+                config.tokens.empty() ? commands_at_a_time : commands_of_one, commands_waiting),
       fields_(limits_of(config, fields_at_a_time)),
       runs_(limits_of(config, config.workers)) {}
 

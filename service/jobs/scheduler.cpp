@@ -189,7 +189,9 @@ bool Scheduler::finish_complete() {
   for (const Job& job : store_.complete_jobs()) {
     try {
       requeued |= !finish(job);
-    } catch (const IoError& e) {
+    } catch (const StorageError&) {
+      throw;
+    } catch (const std::exception& e) {  // of this job: the others go on
       log_error("no_statistics", {{"job", job.id}, {"why", e.what()}});
       if (!room_on_disk()) throw;  // tried again when there is room
       store_.finish(job.number, JobState::failed, std::string("the statistics cannot be written: ") + e.what());

@@ -4,6 +4,7 @@
 import concurrent.futures
 import json
 import os
+import pathlib
 import shutil
 import sqlite3
 import subprocess
@@ -390,17 +391,22 @@ class Repair(Kept):
         self.assertEqual(self.daemon.post(f"/jobs/{job}/retry").status, 200)
         self.assertEqual(self.daemon.wait_for(job)["realizations"], {"planned": 30, "done": 30, "failed": 0})
 
-    def test_statistics_that_could_not_be_written(self):
+    def test_statistics_that_could_not_be_made(self):
         self.start()
-        job = self.daemon.submit(study(8, spacing=0.8, end=1.5))
-        (self.job_files(job) / "study.json").mkdir()
-        info = self.daemon.wait_for(job)
-        self.assertEqual(info["status"], "failed")
-        self.assertIn("study.json", info["message"])
-        (self.job_files(job) / "study.json").rmdir()
-        self.assertEqual(self.daemon.post(f"/jobs/{job}/retry").status, 200)
-        self.assertEqual(self.daemon.wait_for(job)["status"], "successful")
-        self.assertEqual(self.results(job)["realizations"]["done"], 8)
+        for name, block, free in (
+            ("study.json", pathlib.Path.mkdir, pathlib.Path.rmdir),
+            ("realizations.csv", pathlib.Path.mkdir, pathlib.Path.rmdir),
+        ):
+            job = self.daemon.submit(study(8, spacing=0.8, end=1.5))
+            block(self.job_files(job) / name)
+            info = self.daemon.wait_for(job)
+            self.assertEqual(info["status"], "failed")
+            self.assertIn(name, info["message"])
+            self.assertEqual(self.daemon.wait_for(self.daemon.submit())["status"], "successful")
+            free(self.job_files(job) / name)
+            self.assertEqual(self.daemon.post(f"/jobs/{job}/retry").status, 200)
+            self.assertEqual(self.daemon.wait_for(job)["status"], "successful")
+            self.assertEqual(self.results(job)["realizations"]["done"], 8)
 
 
 if __name__ == "__main__":
