@@ -187,7 +187,7 @@ void read_numerics(ObjectReader& in, Numerics& n) {
   in.choice("initial_pressure", n.initial_pressure, initial_pressures,
             {"hydrostatic: from the weight of the soil above; stress_free: none.", "[Z20] Eq. 10, its p0"});
   in.choice("integrator", n.integrator, integrators,
-            {"rk2: midpoint, 2 evaluations a step; leapfrog: symplectic, 1 evaluation.", "[Z20] section 2 for rk2"});
+            {"leapfrog: symplectic, 1 evaluation a step; rk2: midpoint, 2 evaluations.", "[Z20] section 2 for rk2"});
   in.choice(
       "precision", n.precision, precisions,
       {"Precision of the sums over soil pairs: single runs vectorised, double runs the plain reference loops; the "
