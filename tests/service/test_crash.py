@@ -127,14 +127,15 @@ class Crash(ServiceTest):
 
 
 class ManyKills(Crash):
-    """Fifty kills, over a study long enough for them."""
+    """Many kills, over a study long enough for them."""
 
-    RUNS = 120
+    KILLS = int(os.environ.get("TALUS_KILLS", "50"))
+    RUNS = 20 + 2 * KILLS
 
     def test_killed_at_random_moments(self):
-        done, of_talusd, of_workers = self.kills(50, seed=2)
+        done, of_talusd, of_workers = self.kills(self.KILLS, seed=2)
         print(f"\n{of_talusd} kills of talusd, {of_workers} of workers", flush=True)
-        self.assertEqual(done, 50)
+        self.assertEqual(done, self.KILLS)
 
     test_a_second_talusd_is_refused = None
     test_sigterm_drains_and_the_next_one_goes_on = None
