@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "base/json.hpp"
 #include "support/run_memory.hpp"
 
 namespace talus::service {
@@ -60,6 +61,10 @@ Command study_run(const Config& config, const StudyInfo& study, const RunKey& ke
           .environment = environment(config.threads),
           .limits = run_limits(config, particles),
           .niceness = config.niceness};
+}
+
+void log_failure(const CommandOutput& output) {
+  log_error("talus_failed", {{"exit_code", output.end.exit_code}, {"signal", output.end.signal}, {"said", output.err}});
 }
 
 }  // namespace talus::service

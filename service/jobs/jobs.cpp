@@ -7,8 +7,6 @@
 #include "jobs/job_record.hpp"
 #include "jobs/repair.hpp"
 #include "jobs/reserve.hpp"
-#include "support/csv.hpp"
-#include "support/digest.hpp"
 #include "support/files.hpp"
 #include "support/seed.hpp"
 #include "support/text.hpp"
@@ -22,10 +20,7 @@ using std::chrono::seconds;
 
 constexpr double evaluations_per_second = 15e6;  ///< of a core, see README
 constexpr milliseconds histogram_age{1000};      ///< at most, while the job runs
-constexpr std::size_t profiles_kept = 16;        ///< of a job
 constexpr int commands_at_a_time = 4, commands_of_one = 3, commands_waiting = 16, fields_at_a_time = 2;
-constexpr seconds command_limit{60}, profile_limit{3600};
-constexpr seconds patience{60};  ///< of a request for a field or a profile
 constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
 /// Which program or file `talus` could not use, from its error output.
@@ -53,10 +48,6 @@ double particles_of(const Json& demand) {
   return particles.at("soil").get<double>() + particles.at("wall").get<double>();
 }
 
-void log_failure(const CommandOutput& output) {
-  log_error("talus_failed", {{"exit_code", output.end.exit_code}, {"signal", output.end.signal}, {"said", output.err}});
-}
-
 /// A case that `talus` rejects or cannot process.
 [[noreturn]] void refuse_case(const CommandOutput& output, const std::string& pointer) {
   std::vector<Fault> faults;
@@ -74,41 +65,10 @@ void log_failure(const CommandOutput& output) {
   throw Refusal(reason::bad_request, "the case cannot be run", std::move(faults));
 }
 
-/// Removes all but the newest requested profiles; those that the study keeps itself stay.
-void prune(const fs::path& directory) {
-  std::vector<std::pair<fs::file_time_type, fs::path>> files;
-  for (const auto& entry : fs::directory_iterator(directory))
-    if (run_of_work_name(entry.path().stem().string())) files.emplace_back(entry.last_write_time(), entry.path());
-  std::sort(files.rbegin(), files.rend());
-  std::error_code ignored;
-  for (std::size_t i = profiles_kept; i < files.size(); ++i) fs::remove(files[i].second, ignored);
-}
-
-/// The last line of a kept profile.
-std::string checksum_line(const std::string& text) { return hex_digits(fnv1a64(text)) + "\n"; }
-
-/// The text of a kept profile; nothing where there is none, or it is damaged.
-std::optional<std::string> find_kept(const fs::path& file) {
-  std::optional<std::string> text = find_file(file, max_bytes);
-  const std::size_t length = checksum_line("").size();
-  if (!text || text->size() < length) return std::nullopt;
-  const std::string line = text->substr(text->size() - length);
-  text->resize(text->size() - length);
-  if (line != checksum_line(*text)) return std::nullopt;
-  return text;
-}
-
 Productions::Limits limits_of(const Config& config, int at_a_time) {
   return {.at_a_time = at_a_time,
           .waiting = config.streams,
           .waiting_of_one = config.tokens.empty() ? config.streams : config.streams_each};
-}
-
-/// @throws Refusal internal unless the command succeeded
-void check(const CommandOutput& output, const std::string& what) {
-  if (output.ok()) return;
-  log_failure(output);
-  throw Refusal(reason::internal, what + " could not be made");
 }
 
 /// Drops the members that are null or contain null: a statistic without a value.
@@ -379,62 +339,6 @@ Json Jobs::summary(const Job& job) {
   }
   publish_again(job);
   return read();
-}
-
-std::string Jobs::field(const Job& job, std::int64_t index, bool svg, const Caller& caller) {
-  const std::string name = job.id + "/" + std::to_string(index) + (svg ? ".svg" : ".json");
-  return fields_.get(name, caller, patience, [this, job, index, svg](const Productions::Abandoned& abandoned) {
-    return make_field(job, index, svg, abandoned);
-  });
-}
-
-std::string Jobs::make_field(const Job& job, std::int64_t index, bool svg, const Productions::Abandoned& abandoned) {
-  const TemporaryDirectory scratch = scratch_directory();
-  const fs::path file = scratch / (svg ? "field.svg" : "field.csv");
-  const CommandOutput output =
-      run(short_command(config_, {"field", checked_case(data_, job), "--realization", std::to_string(index), "--seed",
-                                  std::to_string(job.seed), "--out", file, "--json"}),
-          command_limit, abandoned);
-  check(output, "the field");
-  const std::string text = read_file(file, max_bytes);
-  if (svg) return text;
-  Json json = Json::parse(output.out);
-  CsvRows rows(text);
-  rows.next();  // the header: x_m, y_m, friction_angle_deg, tan_phi
-  for (const char* key : {"x_m", "y_m", "particle_friction_angle_deg"}) json[key] = Json::array();
-  while (rows.next()) {
-    const std::vector<std::string> fields = rows.fields();
-    json["x_m"].push_back(to_number(fields.at(0)).value());
-    json["y_m"].push_back(to_number(fields.at(1)).value());
-    json["particle_friction_angle_deg"].push_back(to_number(fields.at(2)).value());
-  }
-  return dump(json);
-}
-
-std::string Jobs::profile(const Job& job, std::int64_t index, bool svg, const Caller& caller) {
-  const fs::path kept = StudyPaths{data_.job(job.id)}.profiles() / (std::to_string(index) + (svg ? ".svg" : ".json"));
-  if (auto text = find_kept(kept)) return *text;
-  return runs_.get(kept.string(), caller, patience, [this, job, index, kept](const Productions::Abandoned& abandoned) {
-    if (auto text = find_kept(kept)) return *text;  // made between the two looks
-    return make_profile(job, index, kept, abandoned);
-  });
-}
-
-std::string Jobs::make_profile(const Job& job, std::int64_t index, const fs::path& kept,
-                               const Productions::Abandoned& abandoned) {
-  const fs::path case_file = checked_case(data_, job);
-  const TemporaryDirectory scratch = scratch_directory();
-  const fs::path out = scratch / "run", file = scratch / ("profile" + kept.extension().string());
-  const std::string seed = std::to_string(job.seed);
-  check(run(single_run(config_, {case_file, "--realization", std::to_string(index), "--seed", seed, "--out", out}),
-            profile_limit, abandoned),
-        "the profile");
-  check(run(short_command(config_, {"profile", out, "--out", file}), command_limit, abandoned), "the profile");
-  const std::string text = read_file(file, max_bytes);
-  fs::create_directories(kept.parent_path());
-  write_file_atomically(kept, text + checksum_line(text));
-  prune(kept.parent_path());
-  return text;
 }
 
 }  // namespace talus::service

@@ -72,6 +72,8 @@ class Jobs {
   /// Makes `directory` that of a study, or extends the study in it.
   CommandOutput prepare(const std::filesystem::path& case_file, const StudyPaths& directory, std::int64_t realizations,
                         std::int64_t seed, const Caller& caller);
+  /// @throws Refusal internal unless the command succeeded
+  static void check_made(const CommandOutput& output, const std::string& what);
   std::string make_field(const Job& job, std::int64_t index, bool svg, const Productions::Abandoned& abandoned);
   std::string make_profile(const Job& job, std::int64_t index, const std::filesystem::path& kept,
                            const Productions::Abandoned& abandoned);

@@ -9,7 +9,7 @@
 namespace talus::service {
 namespace {
 
-constexpr std::chrono::seconds kept{60};  ///< for a client that asks again
+constexpr std::chrono::seconds late_client{60};  ///< how long a thing is made on for a client that asks again
 constexpr int ask_again_s = 5;
 
 }  // namespace
@@ -43,7 +43,7 @@ std::string Productions::get(const std::string& name, const Caller& caller, std:
   if (thing->done && !thing->error) return thing->made;
   if (stopping_) throw Refusal(reason::unavailable, "talusd is stopping");
   if (thing->error) std::rethrow_exception(thing->error);
-  if (!caller.stop.stop_requested()) thing->kept_until = Steady::now() + kept;
+  if (!caller.stop.stop_requested()) thing->kept_until = Steady::now() + late_client;
   throw Refusal(reason::unavailable, "not ready yet; it is being made: ask again", {}, ask_again_s);
 }
 
