@@ -177,7 +177,7 @@ Lanes::Lanes(const Config& config)
       production(lane(16, 128, !config.tokens.empty())),
       waiting(lane(kinds_of_waiting * static_cast<std::size_t>(config.streams) + spare_waiting,
                    kinds_of_waiting * static_cast<std::size_t>(config.streams) + 128, !config.tokens.empty())),
-      large(lane(2, 32, !config.tokens.empty())) {}
+      large(lane(1, 32, !config.tokens.empty())) {}
 
 std::unique_ptr<Server> make_server(const Config& config, std::function<Admission(Incoming)> admit) {
   return std::make_unique<AsioServer>(config, std::move(admit));

@@ -39,12 +39,12 @@ class Reply:
 
 
 class Daemon:
-    def __init__(self, data, *options, workers=2, wait=True, environment=None, program=TALUSD):
+    def __init__(self, data, *options, workers=2, wait=True, environment=None, program=None):
         self.data = pathlib.Path(data)
         self.log = open(self.data.parent / "talusd.log", "ab")
         memory = ["--memory", "-1"] if SANITIZED else []
         self.process = subprocess.Popen(
-            [str(program), "--data", str(data), "--listen", "127.0.0.1:0", "--workers", str(workers), *memory,
+            [str(program or TALUSD), "--data", str(data), "--listen", "127.0.0.1:0", "--workers", str(workers), *memory,
              *([] if "--talus" in options else ["--talus", str(TALUS)]),
              *([] if "--min-disk" in options else ["--min-disk", "0"]),
              *map(str, options)], stdout=subprocess.PIPE, stderr=self.log, text=True, env=environment)

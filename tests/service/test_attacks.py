@@ -29,11 +29,13 @@ class Attacks(ServiceTest):
 
     def test_memory_of_large_bodies(self):
         """What is beyond --max-traffic is refused."""
-        self.start()
-        with under("bodies of 4 MiB", self.daemon.port, ""):
-            time.sleep(3)
-        if not SANITIZED:
-            self.assertLess(peak_memory(self.daemon.process.pid), 300)
+        for name in ("bodies of 4 MiB", "bodies of 4 MiB of {}"):
+            self.start()
+            with under(name, self.daemon.port, ""):
+                time.sleep(3)
+            if not SANITIZED:
+                self.assertLess(peak_memory(self.daemon.process.pid), 300, name)
+            self.daemon.stop()
 
 
 for number, (attack, (clients, _)) in enumerate(ATTACKS.items()):

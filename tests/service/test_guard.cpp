@@ -115,6 +115,7 @@ TEST(Guard, FramingThatTwoReadersCouldTakeDifferently) {
   EXPECT_EQ(header_status("no colon"), 400);
   EXPECT_EQ(status("GET / HTTP/1.1", ""), 400);
   EXPECT_EQ(status("GET / HTTP/1.1", "Host: a\r\nHost: b\r\n"), 400);
+  EXPECT_EQ(status("GET / HTTP/1.1", "Host:\r\nHost: b\r\n"), 400);
   EXPECT_EQ(status("GET / HTTP/1.1", "Host: a/b\r\n"), 400);
 }
 
