@@ -4,7 +4,7 @@
 set -euo pipefail
 
 build=(cmake ninja-build g++ pkg-config libeigen3-dev libhdf5-dev libboost-dev nlohmann-json3-dev libcli11-dev libhwy-dev
-       librandom123-dev libcpp-httplib-dev libsqlitecpp-dev libsqlite3-dev libssl-dev gnuplot-nox fonts-dejavu-core curl
+       librandom123-dev libsqlitecpp-dev libsqlite3-dev libssl-dev gnuplot-nox fonts-dejavu-core curl
        dpkg-dev file)
 test=(libgtest-dev libbenchmark-dev libvalijson-dev python3-venv ca-certificates nginx openssl systemd python3-seccomp
       sqlite3 e2fsprogs slurm-wlm munge wrk)

@@ -1,6 +1,5 @@
 // talus submit, status, watch, results, cancel: the subcommands that use a talusd.
 
-#include <httplib.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 
 #include "case/load.hpp"
 #include "cli/help.hpp"
+#include "cli/http_client.hpp"
 #include "cli/progress.hpp"
 #include "cli/verbs.hpp"
 #include "run/warnings.hpp"
@@ -22,8 +22,6 @@
 
 namespace talus::cli {
 namespace {
-
-constexpr int connect_seconds = 5, read_seconds = 120;
 
 struct RemoteOptions {
   std::string server = "http://127.0.0.1:8080";  ///< URL; --server, else TALUS_SERVER
@@ -50,23 +48,18 @@ std::string new_key() {
   return text;
 }
 
+[[noreturn]] void not_a_talusd(const std::string& url) {
+  throw IoError(url + " answered, but not as talusd; check the URL");
+}
+
 /// What the server answered, if that is a success.
 /// @throws ConfigError with the server's faults when it refuses what we sent, IoError for everything else
-Json answer_of(const httplib::Result& result, const std::string& url) {
-  if (!result) {
-    const bool absent =
-        result.error() == httplib::Error::Connection || result.error() == httplib::Error::ConnectionTimeout;
-    throw IoError(absent
-                      ? "cannot reach a talusd at " + url +
-                            ": nothing answers there; start one, or give the URL of another one with --server or "
-                            "TALUS_SERVER"
-                      : "the connection to " + url + " broke (" + httplib::to_string(result.error()) + "); try again");
-  }
-  const Json body = Json::parse(result->body, nullptr, false);
-  if (body.is_discarded()) throw IoError(url + " answered, but not as talusd; check the URL");
-  if (result->status < 300) return body;
-  const std::string detail = body.value("detail", "status " + std::to_string(result->status));
-  if (result->status != 400 && result->status != 422) throw IoError("talusd at " + url + ": " + detail);
+Json answer_of(const HttpReply& reply, const std::string& url) {
+  const Json body = Json::parse(reply.body, nullptr, false);
+  if (body.is_discarded()) not_a_talusd(url);
+  if (reply.status < 300) return body;
+  const std::string detail = body.value("detail", "status " + std::to_string(reply.status));
+  if (reply.status != 400 && reply.status != 422) throw IoError("talusd at " + url + ": " + detail);
   std::vector<Fault> faults;
   for (const Json& error : body.value("errors", Json::array()))
     faults.push_back({error.value("pointer", ""), error.value("message", "")});
@@ -76,28 +69,15 @@ Json answer_of(const httplib::Result& result, const std::string& url) {
 
 /// Sends a request and waits for its answer. @param body  of a POST
 Json ask(const RemoteOptions& options, const char* method, const std::string& path, const Json& body = {}) {
-  const std::string& url = options.server;
-  httplib::Request request;
-  request.method = method;
-  request.path = path;
+  HttpRequest request{.method = method, .path = path};
   if (const std::string secret = token(options); !secret.empty())
-    request.headers.emplace("Authorization", "Bearer " + secret);
+    request.headers.emplace_back("Authorization", "Bearer " + secret);
   if (!body.is_null()) {
-    request.headers.emplace("Idempotency-Key", new_key());
-    request.headers.emplace("Content-Type", "application/json");
+    request.headers.emplace_back("Idempotency-Key", new_key());
+    request.headers.emplace_back("Content-Type", "application/json");
     request.body = body.dump();
   }
-  // The library throws at schemes that it does not know.
-  std::optional<httplib::Client> client;
-  if (url.starts_with("http://") || url.starts_with("https://"))
-    client.emplace(url.ends_with('/') ? url.substr(0, url.size() - 1) : url);
-  if (!client || !client->is_valid())
-    throw ConfigError("", "--server " + url + " is not a URL such as http://127.0.0.1:8080");
-  client->set_connection_timeout(connect_seconds);
-  client->set_read_timeout(read_seconds);
-  httplib::Result result = client->send(request);
-  if (!result && !body.is_null()) result = client->send(request);
-  return answer_of(result, url);
+  return answer_of(send_request(options.server, request), options.server);
 }
 
 std::string path_of(const std::string& job) {
@@ -213,7 +193,15 @@ CLI::App* add_verb(CLI::App& app, Action& action, const char* name, const char* 
   verb->add_option("--token-file", options->token_file, "File with the token; default: $TALUS_TOKEN, if set")
       ->type_name("FILE");
   verb->add_flag("--json", options->json, "Print the server's answer as JSON");
-  verb->callback([options, carry_out, &action] { action = [options, carry_out] { return carry_out(*options); }; });
+  verb->callback([options, carry_out, &action] {
+    action = [options, carry_out] {
+      try {
+        return carry_out(*options);
+      } catch (const Json::exception&) {  // JSON, but with other members than those of talusd
+        not_a_talusd(options->server);
+      }
+    };
+  });
   return verb;
 }
 

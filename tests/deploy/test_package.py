@@ -60,6 +60,15 @@ class Package(unittest.TestCase):
             self.assertRegex(said, r"\(FLAGS_1\).* NOW")
             self.assertIn("GNU_RELRO", said)
 
+    def test_stacks_and_jumps_are_guarded(self):
+        """-fstack-protector-strong calls __stack_chk_fail, -fcf-protection marks the targets of jumps."""
+        for program in ("talus", "talusd"):
+            path = BINARY / "bin" / program
+            symbols = subprocess.run(["readelf", "--dyn-syms", "-W", path], check=True, capture_output=True, text=True).stdout
+            self.assertIn("__stack_chk_fail", symbols)
+            code = subprocess.run(["objdump", "-d", "--no-show-raw-insn", path], check=True, capture_output=True, text=True).stdout
+            self.assertGreater(code.count("endbr64"), 100)
+
     def test_documents_are_those_of_the_programs(self):
         for name in ("case", "result", "study"):
             self.shell(f"talus schema {name} | cmp - /usr/share/talus/schemas/{name}.schema.json")

@@ -48,7 +48,7 @@ ELSEWHERE = {
     "tests/slurm/test_slurm.py",
     "talusd --config talusd.conf": "tests/slurm/test_slurm.py",
     "docker build -f deploy/Dockerfile -t talusd .": "tests/deploy/test_image.py",
-    "docker run -d --init -p 127.0.0.1:8080:8080 -v talusd:/var/lib/talusd"
+    "docker run -d --init --ulimit core=0 --pids-limit 4096 --memory 16g -p 127.0.0.1:8080:8080 -v talusd:/var/lib/talusd"
     " -v $PWD/tokens:/run/secrets/talusd-tokens:ro talusd --workers 8": "tests/deploy/test_image.py",
 }
 PREAMBLE = """

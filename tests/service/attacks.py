@@ -100,7 +100,7 @@ def post(path, body, announced=None):
 
 
 ECHO = "/processes/echo/execution"
-EMPTY_OBJECTS = b"[" + b",".join([b"{}"] * 100_000) + b"]"
+EMPTY_OBJECTS, MANY_EMPTY_OBJECTS = (b"[" + b",".join([b"{}"] * number) + b"]" for number in (100_000, 1_398_000))
 LONG_STRING = b'{"inputs": {"s": "' + b"a" * (4 * MIB - 100) + b'"}}'
 
 SLOW_HEAD = b"GET / HTTP/1.1\r\nHost: localhost\r\nX: "
@@ -119,6 +119,7 @@ ATTACKS = {
     "synchronous waits of 60 s": (300, lambda port, job: patient(port, post(ECHO, PAUSE))),
     "event streams that are not read": (300, lambda port, job: held(port, get(f"/jobs/{job}/events"), 1, reads=False)),
     "the profile of a run": (300, lambda port, job: patient(port, get(f"/jobs/{job}/realizations/0/profile"))),
+    "bodies of 4 MiB of {}": (200, lambda port, job: patient(port, post("/ModelInfo", MANY_EMPTY_OBJECTS))),
     "bodies of 4 MiB": (200, lambda port, job: patient(port, post(ECHO, LONG_STRING))),
 }
 

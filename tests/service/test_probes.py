@@ -18,7 +18,7 @@ HEAD = b"Host: localhost\r\n"
 
 
 class Probes(ServiceTest):
-    """What Debian 12's cpp-httplib 0.11.4 takes by itself, fired over a raw socket."""
+    """What some HTTP servers take, fired over a raw socket."""
 
     options = ("--max-body", "0.01")
 
@@ -128,6 +128,13 @@ class Probes(ServiceTest):
         one = b"GET /healthz HTTP/1.1\r\n" + HEAD
         answer = self.daemon.raw((one + b"\r\n") * 3 + one + b"Connection: close\r\n\r\n")
         self.assertEqual(answer.count(b"HTTP/1.1 200 OK"), 4)
+
+    def test_empty_lines_before_a_request(self):  # RFC 9112 2.2
+        with socket.create_connection(("127.0.0.1", self.daemon.port), timeout=5) as s:
+            for part in (b"\r\n", b"\r", b"\n\r\n", b"GET /healthz HTTP/1.1\r\n" + HEAD + b"\r\n"):
+                s.sendall(part)
+                time.sleep(0.05)
+            self.assertTrue(s.recv(1000).startswith(b"HTTP/1.1 200 "))
 
     def test_targets_in_absolute_form(self):
         here = b"http://localhost:%d" % self.daemon.port
