@@ -306,10 +306,10 @@ std::string Jobs::make_evaluation(const Json& document, const Productions::Aband
   if (!output.end.signal && output.end.exit_code == Exit::bad_case) throw Refusal(reason::bad_request, output.err);
   if (!output.ok()) throw Refusal(reason::internal, "the run failed: " + output.err);
   const Json result = read_json((scratch / "run") / "result.json", 1 << 20);
-  const Json& quality = result.at("quality");
-  if (quality.at("verdict") == word(Verdict::invalid))
-    throw Refusal(reason::internal, "the run failed: its result is invalid, since " +
-                                        quality.at("reasons").at(0).at("message").get<std::string>());
+  for (const Json& why : result.at("quality").at("reasons"))
+    if (why.at("verdict") == word(Verdict::invalid))
+      throw Refusal(reason::internal,
+                    "the run failed: its result is invalid, since " + why.at("message").get<std::string>());
   return dump(result);
 }
 

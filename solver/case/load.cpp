@@ -62,8 +62,10 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
   origins.outlines = std::move(slide.origins);
   in.object("rheology", "How the soil yields.", Absent::defaults,
             [&](ObjectReader& section) { read_rheology(section, m.rheology); });
+  const Json* time = in.find("time");
+  const bool fixed_step = time != nullptr && time->is_object() && time->contains("fixed_step_s");
   in.object("numerics", "How the equations are discretised.", Absent::defaults,
-            [&](ObjectReader& section) { read_numerics(section, m.numerics); });
+            [&](ObjectReader& section) { read_numerics(section, m.numerics, m.rheology.yield, fixed_step); });
   Boundary& bed = m.boundaries.emplace_back();
   bed.line = ground_line(m.terrain);
   in.object("walls", "How the ground acts on the soil.", Absent::defaults,

@@ -39,7 +39,8 @@ struct MaterialInput : Material {
 // read_physics.cpp
 void read_material(ObjectReader& in, MaterialInput& m);
 void read_rheology(ObjectReader& in, Rheology& r);
-void read_numerics(ObjectReader& in, Numerics& n);
+/// @param yield, fixed_step  of the case; the default of the integrator depends on them
+void read_numerics(ObjectReader& in, Numerics& n, Yield yield, bool fixed_step);
 void read_walls(ObjectReader& in, Walls& w, Boundary& bed);
 void read_time(ObjectReader& in, TimeControl& t);
 

@@ -34,7 +34,7 @@ struct Numerics {
   double delta = 0.1;          ///< coefficient of the delta-SPH diffusion [-], >= 0
   bool tension_cutoff = true;  ///< negative pressure is cut to zero
   InitialPressure initial_pressure = InitialPressure::hydrostatic;
-  Integrator integrator = Integrator::leapfrog;
+  Integrator integrator = Integrator::rk2;
   Precision precision = Precision::single;
   double cfl = 0.4;  ///< Courant number [-], in (0, 1]
   bool operator==(const Numerics&) const = default;

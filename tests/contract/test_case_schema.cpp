@@ -111,8 +111,9 @@ TEST(CaseSchema, DefaultsAreTheReaders) {
 /// Nothing is filled in silently: a key of the resolved case was given, or has a default in the schema, or is derived
 /// and says so.
 TEST(CaseSchema, SaysWhatTheReaderFillsIn) {
-  const std::set<std::string> derived{"/terrain/slides_to", "/terrain/measured_from_m", "/terrain/left_end",
-                                      "/terrain/right_end", "/terrain/wall_top_m",      "/terrain/front_thickness_m"};
+  const std::set<std::string> derived{"/terrain/slides_to",  "/terrain/measured_from_m", "/terrain/left_end",
+                                      "/terrain/right_end",  "/terrain/wall_top_m",      "/terrain/front_thickness_m",
+                                      "/numerics/integrator"};
   const test::SchemaCheck schema("case");
   const auto given = json::parse(test::slurp(test::source("schemas/examples/good/case-minimal.json")));
   const json resolved = json::parse(load_case(test::source("schemas/examples/good/case-minimal.json")).resolved.dump());

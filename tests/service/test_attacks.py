@@ -72,9 +72,10 @@ class Limits(ServiceTest):
 
     def test_connections_of_one_address(self):
         self.start("--max-connections-each", 3)
-        held = [self.connect(get("/healthz")) for _ in range(4)]
-        self.assertTrue(held[3].recv(4096).startswith(b"HTTP/1.1 200 "))
-        self.assertTrue(held[0].recv(4096).startswith(b"HTTP/1.1 200 "))
+        held = []
+        for _ in range(4):
+            held.append(self.connect(get("/healthz")))
+            self.assertTrue(held[-1].recv(4096).startswith(b"HTTP/1.1 200 "))
         self.assertEqual(held[0].recv(10), b"")
 
     def test_bodies_of_all_requests_together(self):

@@ -70,7 +70,7 @@ class Ours(ServiceTest):
 
     def test_the_verdicts_of_the_runs_are_told_everywhere(self):
         small = json.loads((SOURCE / "tests/solver/cli/trials/small-slope.json").read_text())
-        job = self.daemon.submit({"inputs": {"case": {**small, "time": {"end_s": 0.8}}, "realizations": 4, "seed": 5}})
+        job = self.daemon.submit({"inputs": {"case": {**small, "time": {"end_s": 0.3}}, "realizations": 4, "seed": 5}})
         info = self.daemon.wait_for(job)
         counts = {"sound": 0, "doubtful": 4, "invalid": 0, "not_assessed": 0}
         self.assertEqual(info["quality"], counts)

@@ -73,8 +73,21 @@ TEST(Checks, TheCourantNumberIsThatOfAStableIntegrator) {
             "deposit begins to shake a little above");
   ASSERT_EQ(faults(0.41, "leapfrog").size(), 1u);
   EXPECT_NE(faults(0.41, "leapfrog")[0].find("integrator \"leapfrog\": allowed > 0 and <= 0.4"), std::string::npos);
-  EXPECT_TRUE(sound(with("/numerics/cfl", 0.8))) << "rk2 is the default";
+  EXPECT_TRUE(sound(with("/numerics/cfl", 0.8))) << "then rk2 is the default";
   EXPECT_FALSE(sound(with("/numerics/cfl", 0.81)));
+}
+
+TEST(Checks, TheLeapfrogIsTheDefaultWhereItRestsAsStillAsTheMidpointRule) {
+  const auto chosen = [](const char* pointer, const Json& value) {
+    return test::load(with(pointer, value)).value.model.numerics.integrator;
+  };
+  EXPECT_EQ(chosen("/numerics/cfl", 0.4), Integrator::leapfrog);
+  EXPECT_EQ(chosen("/numerics/cfl", 0.41), Integrator::rk2);
+  EXPECT_EQ(chosen("/numerics/density_filter", "shepard"), Integrator::rk2);
+  EXPECT_EQ(chosen("/numerics/density_filter", "none"), Integrator::rk2);
+  EXPECT_EQ(chosen("/rheology/yield", "regularized"), Integrator::rk2);
+  EXPECT_EQ(chosen("/time/fixed_step_s", 1e-4), Integrator::rk2);
+  EXPECT_EQ(chosen("/numerics/integrator", "rk2"), Integrator::rk2);
 }
 
 TEST(Checks, TheSchemaKnowsTheLimitsOfTheCourantNumber) {

@@ -73,7 +73,7 @@ class Books(Directory):
         self.prepare(4)
         self.assertEqual(load(self.out / "plan.json")["realizations"], 4)
         self.assertEqual((self.out / "runs/000000.json").read_text(), before)
-        self.assertIn("seed", self.prepare(4, seed=SEED + 1, code=3).stderr)
+        self.assertIn("seed", self.prepare(4, seed=SEED + 1, code=5).stderr)
         self.assertEqual(load(self.out / "plan.json")["seed"], SEED)
 
     def test_statistics_of_a_prepared_study_leave_it_able_to_go_on(self):

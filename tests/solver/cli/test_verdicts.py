@@ -178,14 +178,14 @@ class Run(Directory):
         self.assertEqual((self.result["ending"], self.result["at_rest"]), ("at_rest", True))
 
     def test_a_bed_that_is_too_short_is_doubtful(self):
-        quality = self.assert_says("left_terrain", "doubtful", "particle_spacing_m=0.8", "terrain.bed_m.2.0=26")
+        quality = self.assert_says("left_terrain", "doubtful", "particle_spacing_m=0.8", "terrain.bed_m.2.0=25.5")
         self.assertIn("front_at_open_end", [reason["check"] for reason in quality["reasons"]])
         bounds = ["influence_zone_m", "front_connected_m", "front_mass_99_m", "front_mass_999_m", "centre_of_mass_x_m",
                   "front_at_thickness_m"]
-        self.assertEqual(self.result["lower_bounds"], bounds)  # 16 % of the soil left
+        self.assertEqual(self.result["lower_bounds"], bounds)  # 17 % of the soil left
 
     def test_a_front_that_ends_on_the_terrain_is_no_lower_bound(self):
-        quality, lines = self.verdict("particle_spacing_m=0.8", "terrain.bed_m.2.0=32")
+        quality, lines = self.verdict("particle_spacing_m=0.4", "terrain.bed_m.2.0=32.5")
         self.assertEqual([reason["check"] for reason in quality["reasons"]][0], "left_terrain")
         result = self.result
         self.assertLess(result["front_mass_99_m"], 32)
