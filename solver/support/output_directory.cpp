@@ -1,6 +1,8 @@
 #include "support/output_directory.hpp"
 
+#include <chrono>
 #include <system_error>
+#include <thread>
 
 #include "support/json.hpp"
 #include "support/text.hpp"
@@ -32,9 +34,12 @@ void refuse_foreign(const fs::path& directory) {
   }
 }
 
+/// Tries for a second: what a killed process was just starting keeps its lock until it has begun.
 FileDescriptor lock(const fs::path& directory) {
-  FileDescriptor file = try_lock(directory / lock_name, false).file;
-  if (file) return file;
+  for (int tries = 0; tries < 50; ++tries) {
+    if (FileDescriptor file = try_lock(directory / lock_name, false).file) return file;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
   throw IoError("cannot write into " + directory.string() +
                 ": another process of Talus is at work there; wait for it or choose another directory");
 }

@@ -20,7 +20,7 @@ using test::with;
 TEST(LoadCase, DefaultsAreThoseOfTheStructs) {
   const Case c = test::load(minimal()).value;
   EXPECT_EQ(c.model.rheology, Rheology{});
-  EXPECT_EQ(c.model.numerics, Numerics{});
+  EXPECT_EQ(c.model.numerics, Numerics{.integrator = Integrator::leapfrog});
   EXPECT_EQ(c.model.walls, Walls{});
   EXPECT_EQ(c.study, StudySpec{});
   EXPECT_EQ(c.model.g, Model{}.g);
