@@ -4,7 +4,7 @@ measure(work, coarse)     runs what is missing in the directory `work` and retur
 criteria(numbers)         list of Criterion
 section(numbers, figures) Markdown for the report; writes its figures into the directory `figures`
 
-NOT_MET maps the beginning of a criterion that is known to fail to a value that it must not exceed all the same; REMARKS explain why.
+NOT_MET maps the beginning of a criterion that is known to fail to a value that it must not exceed all the same, or to two that it must lie between; REMARKS explain why.
 """
 
 import csv

@@ -16,9 +16,11 @@ import report
 
 
 def excused(criterion, not_met):
-    """Too large, but within the limit; what is too small is never excused."""
-    high_side = criterion.low is None or criterion.value >= criterion.low
-    return high_side and any(criterion.what.startswith(start) and criterion.value <= limit for start, limit in not_met.items())
+    """Too large, but at most the limit, or within a pair of limits; what is too small is excused by a pair only."""
+    def within(limit):
+        low, high = limit if isinstance(limit, tuple) else (criterion.low, limit)
+        return (low is None or criterion.value >= low) and criterion.value <= high
+    return any(criterion.what.startswith(start) and within(limit) for start, limit in not_met.items())
 
 
 def main(name):
