@@ -232,7 +232,7 @@ void read_walls(ObjectReader& in, Walls& w, Boundary& bed) {
        "interface shear test", "the soil's"});
   if (bed.slip == WallSlip::friction && in.find("friction_angle_deg") == nullptr)
     in.fault("friction_angle_deg",
-             "is missing: slip \"friction\" needs the wall's angle; " + friction_angle.describe());
+             "is missing: slip \"friction\" needs the wall's angle; " + angle_of_friction.describe());
   bed.phi = radians(angle.value_or(0.0));
   in.number("max_velocity_ratio", w.b_max, {"", 1.0, 100.0},
             {"Largest ratio of the mirrored velocity of a wall particle, b_max.", "Morris 1997"});

@@ -68,7 +68,7 @@ class Ground(Directory):
         self.assertEqual(reasons, {"thin_flow"}, "2.5 particles thick, and no false alarm of the ground")
         fine = self.run_case(self.dir / "changed.json", "particle_spacing_m=0.25", "time.end_s=20")
         self.assertEqual(fine["quality"]["verdict"], "sound")
-        self.assertAlmostEqual(fine["front_mass_99_m"], free["front_mass_99_m"], delta=0.5, msg="sheets that glide")
+        self.assertAlmostEqual(fine["front_mass_99_m"], free["front_mass_99_m"], delta=1.0, msg="sheets that glide: 11 m")
 
     def test_the_noise_of_a_survey_does_not_move_the_front(self):
         """A plane that runs into a flat, 5,001 vertices, noise up to 0.2 spacings: the front of the smooth bed.
