@@ -55,7 +55,7 @@ export TALUS_CLANG
 must "build, release" build release
 must "build, dev" build dev
 must "build, tsan" build tsan --target test_simulation test_sph test_integrate talusd test_service
-must "build, fuzz" build fuzz --target fuzz_request fuzz_case fuzz_records
+must "build, fuzz" build fuzz --target fuzz_request fuzz_case fuzz_records fuzz_json
 
 # Where threads meet; talusd with the thread sanitizer, the runs that it starts need none.
 threaded=(Determinism RightHandSide VectorisedFlow Integrator StoreTest 'service_Ours$' 'service_Load$' 'service_Crash$')
