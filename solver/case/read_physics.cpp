@@ -11,7 +11,7 @@
 namespace talus {
 namespace {
 
-constexpr Quantity angle_of_friction{"deg", 0.0, 89.0};  // tan(89 deg) is 57, and grows without bound beyond
+constexpr Quantity friction_angle_range{"deg", 0.0, 89.0};  // tan(89 deg) is 57, and grows without bound beyond
 constexpr Quantity duration{"s", 0.0, 1e7, true};
 constexpr double laboratory_gravity = 9.81;  ///< with which laboratories state unit weights [m/s2]
 constexpr std::size_t most_snapshots = 10'000;
@@ -68,7 +68,7 @@ void read_snapshots(ObjectReader& in, TimeControl& t) {
 /// @param m  its high_rate_friction_angle_deg is read, mu_i is set but for delta_mu
 void read_inertial_friction(ObjectReader& in, MaterialInput& m) {
   InertialFriction<> mu_i;
-  in.required_number("high_rate_friction_angle_deg", m.high_rate_friction_angle_deg, angle_of_friction,
+  in.required_number("high_rate_friction_angle_deg", m.high_rate_friction_angle_deg, friction_angle_range,
                      {"Friction angle at high shear rates, tan = mu_2; more than friction_angle_deg, whose tangent is "
                       "mu_s. A random field varies mu_s; mu_2 - mu_s stays.",
                       "inclined plane or rotating drum; Jop et al. 2006", "", "> friction_angle_deg and <= 89"});
@@ -137,7 +137,7 @@ void read_material(ObjectReader& in, MaterialInput& m) {
                        {"Unit weight of the soil in place, instead of its density: divided by 9.81 m/s2, whatever "
                         "gravity_m_s2 is.",
                         "laboratory", "none"}});
-  in.required_number("friction_angle_deg", m.friction_angle_deg, angle_of_friction,
+  in.required_number("friction_angle_deg", m.friction_angle_deg, friction_angle_range,
                      {"Friction angle phi of the yield stress c + p tan(phi); the median if the random field has no "
                       "log_mean.",
                       "laboratory; [Z20] Eq. 5"});
@@ -223,7 +223,7 @@ void read_walls(ObjectReader& in, Walls& w, Boundary& bed) {
              "Takeda 1994, Morris 1997; Desai 1984 for friction"});
   std::optional<double> angle;
   in.optional_number(
-      "friction_angle_deg", angle, angle_of_friction,
+      "friction_angle_deg", angle, friction_angle_range,
       {"Friction angle of the wall; needed by slip friction, unused otherwise.", "interface shear test", "none"});
   in.optional_number(
       "cohesion_Pa", bed.c, {"Pa", 0.0, 1e9},
@@ -232,7 +232,7 @@ void read_walls(ObjectReader& in, Walls& w, Boundary& bed) {
        "interface shear test", "the soil's"});
   if (bed.slip == WallSlip::friction && in.find("friction_angle_deg") == nullptr)
     in.fault("friction_angle_deg",
-             "is missing: slip \"friction\" needs the wall's angle; " + angle_of_friction.describe());
+             "is missing: slip \"friction\" needs the wall's angle; " + friction_angle_range.describe());
   bed.phi = radians(angle.value_or(0.0));
   in.number("max_velocity_ratio", w.b_max, {"", 1.0, 100.0},
             {"Largest ratio of the mirrored velocity of a wall particle, b_max.", "Morris 1997"});

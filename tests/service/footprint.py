@@ -101,7 +101,7 @@ def echo(place):
     beside = seconds(lambda: daemon.wait_for(daemon.submit(study(6))))
     row("a study of 6 runs alone, and beside them", f"{alone:.1f} s, {beside:.1f} s")
     before = memory(daemon, "VmRSS")
-    pathlib.Path(f"/proc/{daemon.process.pid}/clear_refs").write_text("5")  # the peak begins anew
+    pathlib.Path(f"/proc/{daemon.process.pid}/clear_refs").write_text("5")  # resets the peak
     replies = at_once(20, lambda: daemon.get("/jobs?limit=1000"))
     row("20 x GET /jobs?limit=1000 at once", f"{replies}; {before:.0f} MB before, peak {memory(daemon):.0f} MB")
     size = (daemon.data / "queue.sqlite").stat().st_size / MB
