@@ -48,7 +48,7 @@ Hosts::Hosts(const Config& config)
     names_.insert(lower(machine.data()));
 }
 
-/// The value of a Host header, written anew. @throws Refusal
+/// The value of a Host header in its normal form. @throws Refusal
 std::string Hosts::known(const std::string& host, const std::string& local_address) const {
   const auto wanted = read_authority(host);
   if (!wanted || (!names_.contains(wanted->name) && wanted->name != local_address))

@@ -19,7 +19,7 @@ class Hosts {
   /// The names: loopback, the address of --listen, those of --host and --public-url; with tokens also this machine's.
   explicit Hosts(const Config& config);
 
-  /// Checks Host, Origin and Sec-Fetch-Site, and writes Host anew: a known name and the port.
+  /// Checks Host, Origin and Sec-Fetch-Site, and replaces Host by a known name and the port.
   /// @param local_address  to which the client has connected: "192.0.2.1", "::1"
   /// @throws Refusal forbidden
   void check(Head& head, const std::string& local_address) const;
