@@ -15,9 +15,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
 
-/// Pi_ij = -mu (alpha c_s + beta |mu|)/rho_mean, mu = h J/(r^2 + 0.01 h^2), of the jump J of the velocity along r_ij.
-/// Monaghan 1992, cited by [Z20] Eq. 2, whose J is v_ij.r_ij of approaching pairs and 0 of others. Here as rho_i rho_j
-/// Pi_ij, which the momentum equation needs.
+/// Pi_ij = -mu (alpha c_s + beta |mu|)/rho_mean, mu = h v_ij.r_ij/(r^2 + 0.01 h^2), where particles approach.
+/// Monaghan 1992, cited by [Z20] Eq. 2. Here as rho_i rho_j Pi_ij, which the momentum equation needs.
 /// `Quadratic`: beta is not zero.
 template <class Real, bool Quadratic>
 struct ArtificialViscosity {
@@ -39,6 +38,7 @@ struct ArtificialViscosity {
   }
 
   /// rho_i rho_j Pi_ij = -(rho_i rho_j/rho_mean) mu (alpha c_s + beta |mu|)
+  /// @param jump  v_ij.r_ij where it is negative, otherwise 0
   HWY_INLINE Real operator()(Real of_i, Real rho_i, Real rho_j, Real jump, Real r2) const {
     const Real soft_r2 = r2 + soft;
     const Real linear = of_i * jump * (rho_j / ((rho_i + rho_j) * soft_r2));
@@ -47,21 +47,47 @@ struct ArtificialViscosity {
   }
 };
 
-/// What the artificial viscosity of two soil particles acts on, if their velocities are reconstructed: of v_ij.r_ij
-/// that part which their strain rates do not explain, J = v_ij.r_ij - S with S = r_ij.(e_i + e_j)/2.r_ij (after
-/// Frontiere et al. 2017), times (J/(|J| + |S|))^2. Monaghan's term acts on the whole v_ij.r_ij, so that it resists
-/// smooth shear as a viscosity of about rho alpha c_s h/8 would, which falls with the spacing and decides how far a
-/// slide runs. In smooth shear J is the error of the strain rates, a small part of S, and the square removes it; where
-/// particles shake, S is small and J acts whole. Both signs count: damping of approaching pairs alone is a pressure,
-/// which lifts a sheared layer and drives its toe outwards. Bounded by v_ij.r_ij and zero: it never takes more than
-/// Monaghan's term with both signs would and never feeds energy.
-/// @param smooth  S
-template <class Real>
-HWY_INLINE Real unexplained_jump(Real v_dot_r, Real smooth) {
-  const Real zero(0.0), least(1e-30);
-  const Real left = v_dot_r - smooth, share = left / (abs(left) + abs(smooth) + least);
-  return min(max(left * (share * share), min(v_dot_r, zero)), max(v_dot_r, zero));
-}
+/// The artificial viscosity of two soil particles whose velocities are reconstructed:
+///   rho_i rho_j Pi_ij = -rho_mean mu (alpha c_s + beta |mu|), mu = w h v_ij.r_ij/(r^2 + 0.01 h^2),
+///   w = (J^2/(J^2 + 4 S^2))^2, S = r_ij.(e_i + e_j)/2.r_ij, J = v_ij.r_ij - S.
+/// S is what the strain rates explain of v_ij.r_ij, J what they do not (after Frontiere et al. 2017). Monaghan's term
+/// acts on the whole v_ij.r_ij of approaching pairs, so that it resists smooth shear as a viscosity of about
+/// rho alpha c_s h/8 would, which falls with the spacing and decides how far a slide runs. In smooth shear J is the
+/// error of the strain rates, a small part of S, and its fourth power removes it; where particles shake, S is small and
+/// v_ij.r_ij counts whole. Both signs count: damping of approaching pairs alone is a pressure, which lifts a sheared
+/// layer and drives its toe outwards. The term never feeds energy, since w lies between 0 and 1. Why 4 S^2: README.md.
+/// `Quadratic`: beta is not zero.
+template <class Real, bool Quadratic>
+struct ReconstructedViscosity {
+  Real alpha_c;      ///< alpha c_s [m/s]
+  Real beta_h2;      ///< beta h^2
+  Real half_h2;      ///< -h^2/2, times alpha c_s where the law is linear
+  Real per_h, soft;  ///< 1/h, and 0.01 h^2, in the unit of the distances
+
+  /// @param unit  of the distances [m]
+  HWY_INLINE ReconstructedViscosity(const FlowConstants& k, double unit)
+      : alpha_c(k.numerics.alpha * k.c_s),
+        beta_h2(k.numerics.beta * k.h * k.h / (unit * unit)),
+        half_h2((Quadratic ? -0.5 : -0.5 * k.numerics.alpha * k.c_s) * k.h * k.h / (unit * unit)),
+        per_h(unit / k.h),
+        soft(0.01 * k.h * k.h / (unit * unit)) {}
+
+  /// What all pairs of a particle i have in common.
+  HWY_INLINE Real of_particle(Real rho_i) const { return half_h2 * rho_i; }
+
+  /// rho_i rho_j Pi_ij
+  /// @param v_dot_r       v_ij.r_ij
+  /// @param twice_smooth  2 S/h [m/s]: over h, so that in single precision the fourth power stays in range
+  HWY_INLINE Real operator()(Real of_i, Real rho_j, Real v_dot_r, Real twice_smooth, Real r2) const {
+    const Real least2(1e-18);  // all counts below 1e-9 m/s
+    const Real v = v_dot_r * per_h, left = fnma(Real(0.5), twice_smooth, v);
+    const Real left2 = fma(left, left, least2), all2 = fma(twice_smooth, twice_smooth, left2);
+    const Real w_r2 = (left2 * left2) / (all2 * all2 * (r2 + soft));
+    const Real linear = fma(half_h2, rho_j, of_i) * v * w_r2;
+    if constexpr (!Quadratic) return linear;
+    return linear * fma(beta_h2, abs(v) * w_r2, alpha_c);
+  }
+};
 
 /// The part of r_ij across the wall. With reconstruction the artificial viscosity between soil and wall acts on the
 /// velocity across the wall alone, and across it: soil that slides along a wall is slowed by friction, not by numerics.

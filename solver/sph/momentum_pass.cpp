@@ -61,11 +61,11 @@ void wall_stress_dispatch(PackedFlow& f, const FlowConstants& k, WallParticles& 
 }
 
 /// Of a cluster that begins at place i.
-HWY_INLINE Symmetric<Lanes> half_strain_rate(const PackedSoil& soil, std::size_t i) {
-  Symmetric<Lanes> half_e;
+HWY_INLINE Symmetric<Lanes> strain_rate(const PackedSoil& soil, std::size_t i) {
+  Symmetric<Lanes> e;
   Lanes unused;
-  load_groups(soil.strain.data() + 4 * i, half_e.xx, half_e.yy, half_e.xy, unused);
-  return half_e;
+  load_groups(soil.strain.data() + 4 * i, e.xx, e.yy, e.xy, unused);
+  return e;
 }
 
 /// `Reconstruct`: VelocityJump::reconstructed.
@@ -74,6 +74,7 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
   const double quantum = f.fixed.quantum;
   const Kernel kernel(quantum / k.h);
   const ArtificialViscosity<Lanes, Quadratic> viscosity(k, quantum);
+  const ReconstructedViscosity<Lanes, Quadratic> reconstructed(k, quantum);
   const WallLaw<Lanes> wall(k, quantum);
   const Lanes volume_w(k.dx * k.dx), to_force(-sigma_h2<Kernel>(k.h) * quantum);
   const Vector<Lanes> g{Lanes(k.g.x), Lanes(k.g.y)};
@@ -86,19 +87,23 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
     load_groups(f.soil.motion.data() + 4 * i, x.x, x.y, v.x, v.y);
     load_groups(f.soil.density.data() + 4 * i, volume, q, rho, material);
     load_groups(f.soil.stress.data() + 4 * i, s.xx, s.yy, s.xy, p);
-    const Symmetric<Lanes> half_e = Reconstruct ? half_strain_rate(f.soil, i) : Symmetric<Lanes>{};
+    const Symmetric<Lanes> e = Reconstruct ? strain_rate(f.soil, i) : Symmetric<Lanes>{};
     const Lanes viscosity_of_i = viscosity.of_particle(rho);
     Vector<Lanes> sum{Lanes(0.0), Lanes(0.0)};
     auto powers = PairPowers<Lanes>::zero();
+    const Lanes reconstructed_of_i = reconstructed.of_particle(rho);
     const auto add_soil = [&](const Pair& pair) HWY_ATTR {
       const float* HWY_RESTRICT motion = f.soil.motion.data() + 4 * pair.j;
       const float* HWY_RESTRICT density = f.soil.density.data() + 4 * pair.j;
-      const Lanes VF = Lanes(density[0]) * pair.kernel;
+      const Lanes VF = Lanes(density[0]) * pair.kernel, rho_j(density[2]);
       const Lanes v_dot_r = dot(v - Vector<Lanes>{Lanes(motion[2]), Lanes(motion[3])}, pair.r);
-      Lanes jump = min(v_dot_r, Lanes(0.0));
-      if constexpr (Reconstruct)
-        jump = unexplained_jump(v_dot_r, dot((half_e + tensor_of(f.soil.strain, pair.j)) * pair.r, pair.r));
-      const Lanes Pi = viscosity(viscosity_of_i, rho, Lanes(density[2]), jump, pair.r2);
+      Lanes Pi;
+      if constexpr (Reconstruct) {
+        const Lanes twice_smooth = dot((e + tensor_of(f.soil.strain, pair.j)) * pair.r, pair.r);
+        Pi = reconstructed(reconstructed_of_i, rho_j, v_dot_r, twice_smooth, pair.r2);
+      } else {
+        Pi = viscosity(viscosity_of_i, rho, rho_j, min(v_dot_r, Lanes(0.0)), pair.r2);
+      }
       sum = add_force(sum, s, tensor_of(f.soil.stress, pair.j), Pi, VF, pair.r);
       if constexpr (Measure) powers.add_soil(Pi, VF, v_dot_r);
     };

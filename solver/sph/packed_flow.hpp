@@ -39,7 +39,7 @@ struct PackedSoil {
   std::vector<float> motion;      ///< x, y [quantum, as integers], vx, vy [m/s]
   std::vector<float> density;     ///< m/rho [m2], rho/rho0 - 1 less its hydrostatic part [-], rho [kg/m3], material
   std::vector<float> stress;      ///< sxx, syy, sxy, p [Pa]
-  std::vector<float> strain;      ///< half the strain rate exx, eyy, exy [m/s per quantum], unused
+  std::vector<float> strain;      ///< strain rate over h: exx, eyy, exy [m/s per quantum2], unused
   std::vector<float> q;           ///< rho/rho0 - 1 [-], not grouped
   std::vector<float> c, tan_phi;  ///< as in Soil, not grouped; packed with the neighbour lists
   std::vector<float> ax, ay, drho, dtxx, dtyy, dtxy, gamma_dot;  ///< of the last evaluation, as in Soil

@@ -158,6 +158,7 @@ struct Passes {
   template <bool Quadratic>
   void update_acceleration(std::size_t i) const {
     const ArtificialViscosity<double, Quadratic> viscosity(k, 1.0);
+    const ReconstructedViscosity<double, Quadratic> reconstructed(k, 1.0);
     const Vector<double> v_i = vector(soil.velocity(i));
     const double rho_i = density(i), viscosity_of_i = viscosity.of_particle(rho_i);
     const Symmetric<double> s_i = stress(i), e_i = strain[i];
@@ -166,9 +167,10 @@ struct Passes {
     auto pair_powers = PairPowers<double>::zero();
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double v_dot_r = dot(v_i - vector(soil.velocity(j)), r);
-      const double jump =
-          reconstruct ? unexplained_jump(v_dot_r, 0.5 * dot((e_i + strain[j]) * r, r)) : std::min(v_dot_r, 0.0);
-      const double Pi = viscosity(viscosity_of_i, rho_i, density(j), jump, r2);
+      const double twice_smooth = dot((e_i + strain[j]) * r, r) / k.h;
+      const double Pi = reconstruct
+                            ? reconstructed(reconstructed.of_particle(rho_i), density(j), v_dot_r, twice_smooth, r2)
+                            : viscosity(viscosity_of_i, rho_i, density(j), std::min(v_dot_r, 0.0), r2);
       const double VF = volume(j) * minus_F(r2);
       sum = add_force(sum, s_i, stress(j), Pi, VF, r);
       if (powers) pair_powers.add_soil(Pi, VF, v_dot_r);

@@ -39,8 +39,8 @@ struct ClusterPoint {
   }
   HWY_INLINE const ClusterPoint& elastic() const { return *this; }
   HWY_INLINE void set_strain_rate(Symmetric<Lanes> e) const {
-    const Symmetric<Lanes> half = Lanes(0.5 * f.fixed.quantum) * e;
-    store_groups(half.xx, half.yy, half.xy, Lanes(0.0), f.soil.strain.data() + 4 * i, count);
+    const Symmetric<Lanes> over_h = Lanes(f.fixed.quantum * f.fixed.quantum / k.h) * e;
+    store_groups(over_h.xx, over_h.yy, over_h.xy, Lanes(0.0), f.soil.strain.data() + 4 * i, count);
   }
   HWY_INLINE void set_stress(Symmetric<Lanes> s, Lanes p) const {
     store_groups(s.xx, s.yy, s.xy, p, f.soil.stress.data() + 4 * i, count);

@@ -60,6 +60,9 @@ def variations(numerics, sound_speed, shear_modulus):
     integrator = numerics["integrator"]
     other = "leapfrog" if integrator == "rk2" else "rk2"
     found = factors("speed of sound, same shear modulus", "numerics.sound_speed_m_s", sound_speed, also={"rheology.shear_modulus_Pa": shear_modulus})
+    alpha = numerics["artificial_viscosity_alpha"]
+    found += [Variation("speed of sound, same alpha c_s", f"x {factor:g}", {"numerics.sound_speed_m_s": factor * sound_speed, "rheology.shear_modulus_Pa": shear_modulus, "numerics.artificial_viscosity_alpha": alpha / factor})
+              for factor in (0.5, 2) if alpha > 0]
     found += factors("artificial viscosity", "numerics.artificial_viscosity_alpha", numerics["artificial_viscosity_alpha"])
     found += factors("shear modulus", "rheology.shear_modulus_Pa", shear_modulus, by=(0.25, 4))
     found += factors("density diffusion", "numerics.delta_sph_coefficient", numerics["delta_sph_coefficient"])

@@ -85,6 +85,13 @@ TEST(Dissipation, AViscosityBelowTheArtificialOneIsWarnedOf) {
   EXPECT_EQ(pointers_of({"material.viscosity_Pa_s=1000", alpha, "numerics.artificial_viscosity_jump=reconstructed"}),
             "");
   EXPECT_EQ(pointers_of({"material.viscosity_Pa_s=1000", whole, "numerics.artificial_viscosity_alpha=0.05"}), "");
+  EXPECT_EQ(pointers_of({"material.viscosity_Pa_s=188", alpha}), "") << "a tenth is left by reconstruction";
+  const std::vector<Fault> tiny = warnings_of({"material.viscosity_Pa_s=1.5", alpha});
+  ASSERT_EQ(tiny.size(), 1u);
+  EXPECT_EQ(
+      tiny[0].message,
+      "is 1.5 Pa s, less than the artificial viscosity, which acts as about 188 Pa s at this particle spacing and "
+      "decides the run-out; it falls with the spacing; talus validate lists values by soil type");
 }
 
 TEST(Dissipation, MuOfIIsJudgedByItsLargestViscosityAndItsGrains) {

@@ -48,18 +48,16 @@ double profile_error(Yield yield, Integrator integrator, double dx) {
   return std::sqrt(sum / n) / U;
 }
 
-// The cap b_max of the wall's mirrored velocity lets the lowest particles slip a little: with 3 the error is 0.071 at
-// 0.05 m and 0.024 at 0.025 m, with the default of 1.5, which keeps deposits calm, 0.148 and 0.055. Half the viscosity
-// or the yield stress would give an error over 0.4.
-TEST(BinghamLayer, ElasticYieldFindsTheClosedForm) {
-  EXPECT_LT(profile_error(Yield::elastic, Integrator::rk2, 0.05), 0.08);
+// The cap b_max of the wall's mirrored velocity lets the lowest particles slip a little. With 3 and no artificial
+// viscosity the error is 0.0985 at 0.05 m and 0.044 at 0.025 m: that of the method, of first order. Artificial
+// viscosity hides a part of it, 0.080 and 0.042 with alpha = 0.1. Half the viscosity or the yield stress would give an
+// error over 0.4.
+void expect_closed_form(Yield yield, Integrator integrator) {
+  for (const double dx : {0.05, 0.025}) EXPECT_LT(profile_error(yield, integrator, dx), 2.0 * dx) << dx;
 }
-TEST(BinghamLayer, RegularizedYieldFindsTheClosedForm) {
-  EXPECT_LT(profile_error(Yield::regularized, Integrator::rk2, 0.05), 0.08);
-}
-TEST(BinghamLayer, LeapfrogFindsTheClosedForm) {
-  EXPECT_LT(profile_error(Yield::elastic, Integrator::leapfrog, 0.05), 0.08);
-}
+TEST(BinghamLayer, ElasticYieldFindsTheClosedForm) { expect_closed_form(Yield::elastic, Integrator::rk2); }
+TEST(BinghamLayer, RegularizedYieldFindsTheClosedForm) { expect_closed_form(Yield::regularized, Integrator::rk2); }
+TEST(BinghamLayer, LeapfrogFindsTheClosedForm) { expect_closed_form(Yield::elastic, Integrator::leapfrog); }
 
 }  // namespace
 }  // namespace talus

@@ -206,12 +206,13 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       if (reconstruct) {
         const double smooth =
             ((e_xx[i] + e_xx[j]) * x * x + (e_yy[i] + e_yy[j]) * y * y) / 2 + (e_xy[i] + e_xy[j]) * x * y;
-        const double left = vr - smooth, size = std::abs(left);
-        vr = std::clamp(left * std::pow(size / (size + std::abs(smooth)), 2), std::min(vr, 0.0), std::max(vr, 0.0));
+        const double left2 = std::pow(vr - smooth, 2);
+        vr *= std::pow(left2 / (left2 + 4 * smooth * smooth), 2);
       } else {
         vr = std::min(vr, 0.0);
       }
-      const double Pi = viscous(vr, x, y, (s.rho[i] + s.rho[j]) / 2), rr = s.rho[i] * s.rho[j];
+      const double mean = (s.rho[i] + s.rho[j]) / 2, rr = s.rho[i] * s.rho[j];
+      const double Pi = viscous(vr, x, y, reconstruct ? rr / mean : mean);
       r.ax[i] += s.m[j] * (((r.sxx[i] + r.sxx[j]) / rr - Pi) * gx + (r.sxy[i] + r.sxy[j]) / rr * gy);
       r.ay[i] += s.m[j] * ((r.sxy[i] + r.sxy[j]) / rr * gx + ((r.syy[i] + r.syy[j]) / rr - Pi) * gy);
     }
