@@ -128,7 +128,7 @@ constexpr Check checks[] = {
      0.0,
      {},
      [](const RunFacts& f, double) {
-       return particles(f.at_open_end, f) + " lie within a spacing of an open end of the bed";
+       return particles(f.at_open_end, f) + " lie within the kernel's reach, 2h, of an open end of the bed";
      }},
     // A hundredth of the speed scale of the fall: the front of a trial that ended at 3 % was 0.2 % short.
     {"still_moving",

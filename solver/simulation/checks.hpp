@@ -33,7 +33,7 @@ struct RunFacts {
   std::int64_t soil = 1;                 ///< particles
   std::int64_t penetrated = 0;           ///< of them, those that were ever lost in the ground
   std::int64_t left_domain = 0;          ///< of them, those that left through an open end
-  std::int64_t at_open_end = 0;          ///< of them, those that came to within a spacing of an open end
+  std::int64_t at_open_end = 0;          ///< of them, those that lie within 2h of an open end
   double dx = 1.0;                       ///< particle spacing [m]
   double time = 0.0;                     ///< reached [s]
   std::optional<double> rms_speed = {};  ///< at the end, over sqrt(|g| H) [-]

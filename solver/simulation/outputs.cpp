@@ -111,12 +111,14 @@ bool Simulation::at_rest() const {
                      creep() <= rest_advance * model_.dx);
 }
 
-/// Particles that are nearer than a spacing to an open end of the bed, and did not start there.
+/// Particles that are within the kernel's reach of an open end of the bed, and did not start there: nothing holds them
+/// back from the other side, which draws them on by up to two spacings.
 std::int64_t Simulation::at_open_end() const {
   const Terrain& terrain = model_.terrain;
   if (terrain.closed) return 0;
-  const double left = terrain.left_wall ? -1e300 : terrain.bed.front().x + model_.dx;
-  const double right = terrain.right_wall ? 1e300 : terrain.bed.back().x - model_.dx;
+  const double reach = 2.0 * constants().h;
+  const double left = terrain.left_wall ? -1e300 : terrain.bed.front().x + reach;
+  const double right = terrain.right_wall ? 1e300 : terrain.bed.back().x - reach;
   std::int64_t count = 0;
   for (std::size_t i = 0; i < soil_.n_active; ++i) {
     const bool at_end = soil_.x[i] < left || soil_.x[i] > right;

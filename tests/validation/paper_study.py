@@ -19,7 +19,7 @@ from experiment import at_most, table, within
 
 TITLE = "The paper's study"
 SOURCE = "[Z20] section 4, Table 4 and Figures 12-15: |sigma| = 0.0763 ... 0.3814 at ell = 0.5 m (cases 1-5), ell = 0.1 ... 0.4 m at |sigma| = 0.2289 (cases 6-9, 3)"
-WANTED = 200  # realizations of each study
+WANTED = {"paper": 200, "sorted": 200, "share": 100}  # realizations of each study
 SPACING, FINE = 0.2, 0.1  # [m]
 FINE_STUDIES = [("share", 6), ("share", 3), ("sorted", 6), ("sorted", 3), ("share", 1), ("share", 5)]  # ell = FINE and five times as long; sigma from end to end
 TABLE_4 = {  # standard deviation of ln tan(phi), correlation length [m]
@@ -64,9 +64,10 @@ def read_rows(record):
         return list(csv.DictReader(file))
 
 
-def advance(work, realizations, spacing=SPACING, records=RECORDS, chosen=tuple((t, c) for t in TRUNCATIONS for c in TABLE_4)):
-    """Runs every study up to the given number of realizations. Realization i has the same draws in all cases."""
+def advance(work, most, spacing=SPACING, records=RECORDS, chosen=tuple((t, c) for t in TRUNCATIONS for c in TABLE_4)):
+    """Runs every study up to the given number of realizations, or as many as are wanted of it. Realization i has the same draws in all cases."""
     for truncation, case in chosen:
+        realizations = min(most, WANTED[truncation])
         extend(pathlib.Path(work) / "paper_study" / f"dx{spacing:g}", records / name(case, truncation), realizations, base(case, truncation), settings(case, truncation, spacing))
         print(name(case, truncation), realizations, flush=True)
 
@@ -196,9 +197,10 @@ def section(numbers, directory):
                      f"{zone['stdev']:.3f}", interval(zone["stdev_ci95"]), f"{1000 * zone['noise_floor_stdev']:.1f}", f"{s['centre_of_mass_x_m']['stdev']:.3f}"])
     text = f"Spacing {numbers['spacing_m']:g} m; realization i has the same draws in every case. `paper`: the paper's method (`table4-case*.json`, 5 modes) with its Courant number; the defaults with the 5 largest modes " \
            "(`sorted`) and with 95 % of the variance (`share`).\n\n"
-    fewest = min(s["n"] for s in numbers["studies"])
-    if fewest < WANTED:
-        text += f"Of {WANTED} planned realizations per study at least {fewest} are done.\n\n"
+    for truncation, wanted in WANTED.items():
+        fewest = min((s["n"] for s in numbers["studies"] if s["truncation"] == truncation), default=0)
+        if fewest < wanted:
+            text += f"Of {wanted} planned realizations per study with `{truncation}` at least {fewest} are done.\n\n"
     text += "The numerical noise is that of realization 0.\n\n"
     text += table(["case", "modes", "sigma", "ell [m]", "N", "captured [%]", "mean [m]", "95 %", "stdev [m]", "95 %", "noise [mm]", "stdev of the centre of mass [m]"], rows)
     text += "\nSpread by measure [m]:\n\n" + table(["case", "modes", *MEASURES.values()], [[s["case"], s["truncation"], *(f"{spread(s, key):.3f}" for key in MEASURES)] for s in numbers["studies"]])
@@ -281,7 +283,7 @@ def growth(pair):
     return ", ".join(f"{name} {with_interval(ratio(pair, key), 1)}" for key, name in MEASURES.items())
 
 
-def shift(pair, first=WANTED):
+def shift(pair, first=max(WANTED.values())):
     """Mean difference of the influence zone between two studies over the `first` draws, as far as both have them, with its 95 % interval [m]."""
     both = min(first, *(s["n"] for s in pair))
     apart = np.array(pair[1]["fronts"][:both]) - np.array(pair[0]["fronts"][:both])
@@ -386,7 +388,7 @@ def the_mean(numbers, by_sigma):
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("work")
-    options.add_argument("realizations", type=int, nargs="*", default=[WANTED])
+    options.add_argument("realizations", type=int, nargs="*", default=[max(WANTED.values())])
     options.add_argument("--spacing", type=float, choices=(SPACING, FINE), default=SPACING)
     chosen = options.parse_args()
     for target in chosen.realizations:

@@ -152,7 +152,8 @@ TEST(Checks, ParticlesAreCounted) {
   const Quality close = checks([](RunFacts& f) { f.at_open_end = 3; });
   ASSERT_EQ(close.reasons.size(), 1u);
   EXPECT_EQ(close.reasons[0].check, "front_at_open_end");
-  EXPECT_EQ(close.reasons[0].message, "3 of 1000 particles lie within a spacing of an open end of the bed");
+  EXPECT_EQ(close.reasons[0].message,
+            "3 of 1000 particles lie within the kernel's reach, 2h, of an open end of the bed");
 }
 
 TEST(Checks, TheWorstReasonDecides) {
