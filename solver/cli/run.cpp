@@ -87,6 +87,9 @@ void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t see
   for (const std::string& note : r.notes) std::printf("note: %s\n", note.c_str());
   std::printf("time reached              %10.3f s   in %lld steps%s\n", r.time, static_cast<long long>(r.steps),
               r.at_rest ? ", at rest" : "");
+  if (const std::optional<double> share = r.energy.numerical_share())
+    std::printf("numerical dissipation     %10.1f %%   of gravity's work, taken by the method instead of the soil\n",
+                100.0 * *share);
   std::printf("particles                 %10lld soil + %lld wall, %lld penetrated\n", static_cast<long long>(r.soil),
               static_cast<long long>(r.wall), static_cast<long long>(r.penetrated));
   if (r.left_domain > 0)

@@ -190,9 +190,10 @@ void transfer_quality(ObjectIo& root, RunResult& result) {
 void transfer_energy(ObjectIo energy, EnergyBudget& budget) {
   for (const EnergyTerm& term : energy_terms) energy.number(term.key, budget.*term.value);
   double created = budget.created();
-  std::optional<double> share = budget.created_share();
+  std::optional<double> created_share = budget.created_share(), numerical_share = budget.numerical_share();
   energy.number("created_J_m", created);
-  energy.optional("created_share", share);
+  energy.optional("created_share", created_share);
+  if (energy.has("numerical_share")) energy.optional("numerical_share", numerical_share);
 }
 
 void transfer_measures(ObjectIo& root, RunResult& result) {

@@ -45,10 +45,7 @@ std::string least_angle(const RunFacts& f) { return rounded(degrees(std::atan(*f
 
 double created_share(const RunFacts& f) { return f.energy.created() / gravity_work(f); }
 
-/// What the method itself takes, over gravity's work.
-double numerical_share(const RunFacts& f) {
-  return (f.energy.artificial_viscosity + f.energy.density_diffusion) / gravity_work(f);
-}
+double numerical_share(const RunFacts& f) { return f.energy.numerical() / gravity_work(f); }
 
 constexpr Check checks[] = {
     // Stable runs of all trials create less than 0.9 % of gravity's work; unstable ones, whose fronts are wrong by

@@ -30,12 +30,18 @@ struct EnergyBudget {
   /// Energy that no term explains; positive: made out of nothing.
   double created() const { return stored() + lost() - stored_at_start; }
   double gravity_work() const { return -potential; }
-  /// created() over gravity_work() [-]; unset where gravity has done no work.
-  std::optional<double> created_share() const {
-    return gravity_work() > 0.0 ? std::optional(created() / gravity_work()) : std::nullopt;
-  }
+  /// What the method itself takes, and no soil.
+  double numerical() const { return artificial_viscosity + density_diffusion; }
+  /// Over gravity_work() [-]; unset where gravity has done no work.
+  std::optional<double> created_share() const { return over_gravity(created()); }
+  std::optional<double> numerical_share() const { return over_gravity(numerical()); }
 
   bool operator==(const EnergyBudget&) const = default;
+
+ private:
+  std::optional<double> over_gravity(double energy) const {
+    return gravity_work() > 0.0 ? std::optional(energy / gravity_work()) : std::nullopt;
+  }
 };
 
 /// A term as files name it.

@@ -66,6 +66,10 @@ class Run(Directory):
         self.assertTrue(self.result["at_rest"])
         self.assertEqual(lines[0], "distances from x = 0 m to the right")
         self.assertEqual(self.stderr, "")
+        energy = self.result["energy"]
+        share = (energy["artificial_viscosity_J_m"] + energy["density_diffusion_J_m"]) / -energy["potential_J_m"]
+        self.assertAlmostEqual(energy["numerical_share"], share, places=12)
+        self.assertIn(f"numerical dissipation     {100 * share:10.1f} %   of gravity's work", "\n".join(lines))
 
     def test_a_courant_number_beyond_stability_is_refused(self):
         for settings in (["numerics.integrator=leapfrog", "numerics.cfl=0.6"], ["numerics.cfl=1.0"]):

@@ -195,6 +195,7 @@ TEST(Energy, SharesOfTermsAndOfCreation) {
                        .stored_at_start = 2};
   EXPECT_EQ(e.created(), 1 - 64 + 3 + 5 + 20 + 7 + 9 + 2 + 4 + 6 + 8 - 2);
   EXPECT_EQ(e.created_share(), e.created() / 64);
+  EXPECT_EQ(e.numerical_share(), 11.0 / 64);
   EXPECT_EQ((EnergyBudget{.potential = 1}).created_share(), std::nullopt);
 }
 
