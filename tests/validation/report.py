@@ -35,7 +35,8 @@ def page(results, out):
     """Markdown of all experiments that have numbers."""
     modules = {name: importlib.import_module(name) for name in results}
     found = [c for name, numbers in results.items() for c in modules[name].criteria(numbers)]
-    summary = (HERE / "summary.md").read_text().replace("@COUNT@", str(len(found))).replace("@FAILED@", str(sum(not c.met for c in found)))
+    unmet = ", ".join(f"{modules[name].TITLE[0].lower()}{modules[name].TITLE[1:]} ({count})" for name, numbers in results.items() if (count := sum(not c.met for c in modules[name].criteria(numbers))))
+    summary = (HERE / "summary.md").read_text().replace("@COUNT@", str(len(found))).replace("@FAILED@", str(sum(not c.met for c in found))).replace("@UNMET@", unmet)
     lines = ["# Validation", "", "Written by `tests/validation/report.sh`, which repeats every run behind the tables. Where a number in a remark comes from another run, the remark says so.", "",
              summary, "## All criteria", "",
              "| experiment | criterion | value | acceptance limit | origin of the limit | |", "|---|---|---|---|---|---|"]
