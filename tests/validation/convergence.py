@@ -58,7 +58,7 @@ def section(numbers, directory):
             axes.semilogx([r["spacing_m"] for r in numbers["rows"]], [r[key] for r in numbers["rows"]], "o-", label=name)
     axes.set(xlabel="particle spacing dx [m]", ylabel="front [m]", xticks=[0.05, 0.1, 0.2, 0.4], xticklabels=["0.05", "0.1", "0.2", "0.4"])
     axes.minorticks_off()
-    axes.legend()
+    axes.legend(fontsize=7, ncol=2, loc="center", bbox_to_anchor=(0.5, 0.33))
     rows = [[r["spacing_m"], *(f"{r[key]:.3f}" for key in MEASURES), f"{1000 * r['final_max_speed_m_s']:.1f}"] for r in numbers["rows"]]
     return table(["dx [m]", *(f"{name} [m]" for name in MEASURES.values()), "fastest particle at the end [mm/s]"], rows) + \
         f"\nThe fixed thickness is {numbers['rows'][0]['thickness_m']:.2g} m. Changes at each halving [m]: " + "; ".join(f"{name} {changes(numbers['rows'], key)}" for key, name in MEASURES.items()) + ".\n\n" + fig.save(figure, directory, "convergence")
