@@ -188,6 +188,12 @@ class Run(Directory):
                   "front_at_thickness_m"]
         self.assertEqual(self.result["lower_bounds"], bounds)  # 15 % of the soil left
 
+    def test_a_front_within_the_reach_of_the_kernel_is_doubtful(self):
+        """0.53 m before the end: more than a spacing, less than 2h."""
+        self.assert_says("front_at_open_end", "doubtful", "terrain.bed_m.2.0=34")
+        self.assertGreater(34 - self.result["influence_zone_m"], 0.4)
+        self.assertEqual(self.result["left_domain"], 0)
+
     def test_a_front_that_ends_on_the_terrain_is_no_lower_bound(self):
         quality, lines = self.verdict("particle_spacing_m=0.4", "terrain.bed_m.2.0=33")
         self.assertEqual([reason["check"] for reason in quality["reasons"]][0], "left_terrain")
