@@ -29,7 +29,7 @@ double profile_error(Yield yield, Integrator integrator, double dx) {
   m.dx = dx;
   m.rheology.yield = yield;
   m.numerics.integrator = integrator;
-  m.walls.b_max = 3.0;
+  m.walls.b_max = 4.0;
   m.time.end = 1.0;  // six times the viscous time rho h^2/(2.5 eta)
   Simulation simulation(m, plan_particles(m));
   const Soil& soil = simulation.soil();
@@ -48,16 +48,21 @@ double profile_error(Yield yield, Integrator integrator, double dx) {
   return std::sqrt(sum / n) / U;
 }
 
-// The cap b_max of the wall's mirrored velocity lets the lowest particles slip a little. With 3 and no artificial
-// viscosity the error is 0.0985 at 0.05 m and 0.044 at 0.025 m: that of the method, of first order. Artificial
-// viscosity hides a part of it, 0.080 and 0.042 with alpha = 0.1. Half the viscosity or the yield stress would give an
-// error over 0.4.
-void expect_closed_form(Yield yield, Integrator integrator) {
-  for (const double dx : {0.05, 0.025}) EXPECT_LT(profile_error(yield, integrator, dx), 2.0 * dx) << dx;
+// With b_max = 4 the cap of the wall's mirrored velocity does not matter any more (20 gives the same); the default
+// of 1.5, which keeps deposits calm, lets the lowest particles slip: 0.148 and 0.055. Half the viscosity or the yield
+// stress would give an error over 0.4.
+void expect_closed_form(Yield yield, Integrator integrator, double coarse, double fine) {
+  EXPECT_LT(profile_error(yield, integrator, 0.05), coarse);
+  EXPECT_LT(profile_error(yield, integrator, 0.025), fine);
 }
-TEST(BinghamLayer, ElasticYieldFindsTheClosedForm) { expect_closed_form(Yield::elastic, Integrator::rk2); }
-TEST(BinghamLayer, RegularizedYieldFindsTheClosedForm) { expect_closed_form(Yield::regularized, Integrator::rk2); }
-TEST(BinghamLayer, LeapfrogFindsTheClosedForm) { expect_closed_form(Yield::elastic, Integrator::leapfrog); }
+TEST(BinghamLayer, ElasticYieldFindsTheClosedForm) { expect_closed_form(Yield::elastic, Integrator::rk2, 0.08, 0.045); }
+// 0.081 and 0.047: less than the method's error without artificial viscosity, 0.0985 and about half of it.
+TEST(BinghamLayer, RegularizedYieldFindsTheClosedForm) {
+  expect_closed_form(Yield::regularized, Integrator::rk2, 0.0985, 0.05);
+}
+TEST(BinghamLayer, LeapfrogFindsTheClosedForm) {
+  expect_closed_form(Yield::elastic, Integrator::leapfrog, 0.08, 0.045);
+}
 
 }  // namespace
 }  // namespace talus
