@@ -11,6 +11,7 @@ namespace talus {
 namespace {
 
 const Json empty_object = Json::object();
+constexpr std::size_t most_written_out = 100;  ///< values of an array or an object in a message
 
 /// Characters of UTF-8 text.
 std::size_t characters(std::string_view text) {
@@ -41,7 +42,11 @@ std::string Quantity::describe() const {
          to_text(lo) + " and " + (hi_open ? "< " : "<= ") + to_text(hi);
 }
 
-std::string quote(const Json& value) { return shorten(value.dump(-1, ' ', false, Json::error_handler_t::replace)); }
+std::string quote(const Json& value) {
+  if (value.size() > most_written_out)
+    return (value.is_array() ? "an array of " : "an object of ") + std::to_string(value.size()) + " values";
+  return shorten(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
 
 std::optional<double> read_number(const Json& value, const Quantity& q, const std::string& pointer, Faults& faults) {
   if (!value.is_number()) {

@@ -20,7 +20,7 @@ namespace http = boost::beast::http;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::chrono::seconds connect_limit{5}, reply_limit{120};
+constexpr std::chrono::seconds connect_limit{5};
 
 /// The connection broke, or could not be made.
 struct Broken {
@@ -55,8 +55,9 @@ http::request<http::string_body> message_of(const HttpRequest& request, const Se
 
 /// @param stream  connected
 template <class Stream>
-HttpReply talk(asio::io_context& io, Stream& stream, const http::request<http::string_body>& message) {
-  beast::get_lowest_layer(stream).expires_after(reply_limit);  // for all that follows
+HttpReply talk(asio::io_context& io, Stream& stream, const http::request<http::string_body>& message,
+               std::chrono::seconds limit) {
+  beast::get_lowest_layer(stream).expires_after(limit);  // for all that follows
   run(io, [&](auto done) { http::async_write(stream, message, std::move(done)); });
   beast::flat_buffer buffer;
   http::response_parser<http::string_body> parser;
@@ -83,7 +84,7 @@ HttpReply exchange_once(const ServerUrl& server, const HttpRequest& request) {
   if (!server.tls) {
     beast::tcp_stream stream(io);
     connect(stream);
-    return talk(io, stream, message);
+    return talk(io, stream, message, request.limit);
   }
   asio::ssl::context context(asio::ssl::context::tls_client);
   context.set_default_verify_paths(error);
@@ -93,10 +94,10 @@ HttpReply exchange_once(const ServerUrl& server, const HttpRequest& request) {
   SSL_set_tlsext_host_name(stream.native_handle(), server.host.c_str());
   connect(beast::get_lowest_layer(stream));
   run(io, [&](auto done) { stream.async_handshake(asio::ssl::stream_base::client, std::move(done)); });
-  return talk(io, stream, message);
+  return talk(io, stream, message, request.limit);
 }
 
-[[noreturn]] void throw_io_error(const std::string& url, const Broken& broken) {
+[[noreturn]] void throw_io_error(const std::string& url, std::chrono::seconds limit, const Broken& broken) {
   const auto bytes = [](std::size_t limit, const char* what) {
     return " sends more than " + std::to_string(limit >> 10) + " KiB as the " + what;
   };
@@ -107,7 +108,7 @@ HttpReply exchange_once(const ServerUrl& server, const HttpRequest& request) {
   if (broken.error == http::error::header_limit) throw IoError(url + bytes(max_reply_head, "head") + no_talusd);
   if (broken.error == http::error::body_limit) throw IoError(url + bytes(max_reply_body, "body") + no_talusd);
   if (broken.error == beast::error::timeout)
-    throw IoError(url + " has not answered completely within " + std::to_string(reply_limit.count()) + " s; try again");
+    throw IoError(url + " has not answered completely within " + std::to_string(limit.count()) + " s; try again");
   if (broken.error.category() == http::make_error_code(http::error::bad_version).category() &&
       broken.error != http::error::end_of_stream && broken.error != http::error::partial_message)
     throw IoError(url + " answered, but not as talusd (" + broken.error.message() + "); check the URL");
@@ -145,7 +146,7 @@ HttpReply send_request(const std::string& url, const HttpRequest& request) {
   for (bool last : {request.method != "POST", true}) try {
       return exchange_once(server, request);
     } catch (const Broken& broken) {
-      if (last || !may_be_sent_again(broken)) throw_io_error(url, broken);
+      if (last || !may_be_sent_again(broken)) throw_io_error(url, request.limit, broken);
     }
   throw IoError(url + " does not answer");
 }

@@ -1,6 +1,7 @@
 #pragma once
 // One HTTP request to a talusd, with limits for what the other side may send.
 
+#include <chrono>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@ struct HttpRequest {
   std::string path;  ///< with the query
   std::vector<std::pair<std::string, std::string>> headers = {};
   std::string body = {};
+  std::chrono::seconds limit = std::chrono::minutes(2);  ///< from the connection to the end of the reply
 };
 
 struct HttpReply {
@@ -33,7 +35,7 @@ struct ServerUrl {
 /// "http://host", "https://[::1]:8443/". @throws ConfigError where the text is no such URL
 ServerUrl read_server_url(const std::string& url);
 
-/// Sends a request and receives the whole reply, within two minutes; a certificate must be valid for the host. A POST
+/// Sends a request and receives the whole reply; a certificate must be valid for the host. A POST
 /// is sent once more where the connection breaks.
 /// @throws IoError: nothing answers, the connection breaks, the reply is too large or no HTTP; ConfigError for the URL
 HttpReply send_request(const std::string& url, const HttpRequest& request);

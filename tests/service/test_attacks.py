@@ -34,7 +34,7 @@ class Attacks(ServiceTest):
             with under(name, self.daemon.port, ""):
                 time.sleep(3)
             if not SANITIZED:
-                self.assertLess(peak_memory(self.daemon.process.pid), 300, name)
+                self.assertLess(peak_memory(self.daemon.process.pid), 200, name)
             self.daemon.stop()
 
 

@@ -124,6 +124,7 @@ TEST(ObjectReader, AMissingObjectIsOneFault) {
   };
   EXPECT_EQ(noted(Json::object(), nested), "/m/o: is missing; an object");
   EXPECT_EQ(noted({{"o", 5}}, nested), "/m/o: 5 is not an object");
+  EXPECT_EQ(noted({{"o", Json(std::vector<int>(101))}}, nested), "/m/o: an array of 101 values is not an object");
 }
 
 TEST(ObjectReader, AnOptionalObjectIsReadOnlyWhenGiven) {

@@ -223,7 +223,7 @@ TEST(Energy, HasTheSameBitsForAnyNumberOfThreadsAndAcrossACheckpoint) {
 }
 
 TEST(Energy, OfASlideIsExplained) {
-  Model m = slope();
+  Model m = slope(0.6);
   EXPECT_LT(std::abs(created_share(m)), 0.001);
 }
 
