@@ -34,23 +34,25 @@ Refusal overloaded(const std::string& what) { return {reason::unavailable, what 
 
 }  // namespace
 
-bool Front::close_one(const std::string& address, bool unread) {
+bool Front::close_one(const std::function<bool(const Connection&)>& may) {
   Connection* first = nullptr;
   for (Connection* one : connections) {
     const int rank = one->rank();
-    if (rank == 0 || (unread && !one->is_writing()) || (!address.empty() && one->remote() != address)) continue;
+    if (rank == 0 || !may(*one)) continue;
     if (!first || rank > first->rank() || (rank == first->rank() && one->since() < first->since())) first = one;
   }
   if (first) first->close();
   return first != nullptr;
 }
 
-Connection::Connection(Front& front, boost::asio::ip::tcp::socket socket, std::string remote, std::string local)
+Connection::Connection(Front& front, boost::asio::ip::tcp::socket socket, std::string remote, std::string local,
+                       bool spare)
     : front_(front),
       socket_(std::move(socket)),
       timer_(socket_.get_executor()),
       remote_(std::move(remote)),
       local_(std::move(local)),
+      spare_(spare),
       place_(front.connections.insert(front.connections.end(), this)) {}
 
 Connection::~Connection() { front_.connections.erase(place_); }
@@ -184,6 +186,8 @@ void Connection::take_head(std::size_t size) {
   framing_ = {.body = head.request.method != "HEAD", .chunks = head.chunks, .keep_alive = head.keep_alive};
   front_.hosts.check(head, local_);
   admission_ = front_.admit(std::move(head.request));
+  if (spare_ && admission_.lane != Lane::immediate && admission_.lane != Lane::operation)
+    return refuse(overloaded("there are too many connections"));
   if (admission_.refusal) {
     if (length_ > 0) framing_.keep_alive = false;
     return answer(*admission_.refusal);
@@ -220,7 +224,7 @@ void Connection::add_to_body(std::string_view bytes) {
 /// Closes clients that do not read their answers, where too much is in memory. @return false where it still is
 bool Connection::has_room_for_traffic() {
   while (front_.traffic > front_.traffic_limit)
-    if (!front_.close_one("", true)) return false;
+    if (!front_.close_one([](const Connection& one) { return one.is_writing(); })) return false;
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <functional>
 #include <list>
 #include <memory>
 #include <string>
@@ -37,11 +38,9 @@ struct Front {
   std::list<Connection*> connections = {};  ///< also those that are closed, but whose handler is under way
   bool stopping = false;
 
-  /// Closes the connection that gives way most readily, and of equals the one that has waited longest.
-  /// @param address  of those to look at; empty: all
-  /// @param unread  look at those alone whose client does not read its answer
-  /// @return false where there is none
-  bool close_one(const std::string& address, bool unread = false);
+  /// Closes, of the connections that `may` be closed, the one that gives way most readily, and of equals the one that
+  /// has waited longest. @return false where there is none
+  bool close_one(const std::function<bool(const Connection&)>& may);
 };
 
 /// Bytes counted in Front::traffic while this object exists.
@@ -66,7 +65,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   using Steady = std::chrono::steady_clock;
 
   /// @param front  outlives it
-  Connection(Front& front, boost::asio::ip::tcp::socket socket, std::string remote, std::string local);
+  /// @param spare  whether it is beyond the limits: only the operator's requests are answered
+  Connection(Front& front, boost::asio::ip::tcp::socket socket, std::string remote, std::string local, bool spare);
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
@@ -77,6 +77,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void stop();
 
   const std::string& remote() const { return remote_; }
+  bool is_spare() const { return spare_; }
   bool is_open() const { return state_ != State::closed; }
   bool is_writing() const { return state_ == State::writing; }
   Steady::time_point since() const { return since_; }
@@ -118,6 +119,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   boost::asio::ip::tcp::socket socket_;
   boost::asio::steady_timer timer_;
   const std::string remote_, local_;
+  const bool spare_;
   std::list<Connection*>::iterator place_;
   State state_ = State::idle;
   Steady::time_point since_ = Steady::now();  ///< of the state

@@ -9,6 +9,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <cerrno>
+#include <functional>
 
 #include "base/json.hpp"
 #include "http/connection.hpp"
@@ -22,7 +23,8 @@ using boost::system::error_code;
 using std::chrono::milliseconds;
 
 constexpr int backlog = 1024, most_at_once = 64;
-constexpr milliseconds last_words{1000};  ///< for answers to be sent when the service has stopped
+constexpr int spare_connections = most_at_once;  ///< beyond the limits, for the operator
+constexpr milliseconds last_words{1000};         ///< for answers to be sent when the service has stopped
 constexpr std::string_view no_room =
     "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nRetry-After: 2\r\nConnection: close\r\n\r\n";
 
@@ -125,7 +127,7 @@ class AsioServer final : public Server {
   bool accept_one() {
     const int fd = ::accept4(acceptor_.native_handle(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
     if (fd < 0 && (errno == EMFILE || errno == ENFILE || errno == ENOMEM || errno == ENOBUFS))
-      return front_.close_one("");
+      return front_.close_one([](const Connection&) { return true; });
     if (fd < 0) return errno == ECONNABORTED || errno == EINTR;
     tcp::socket socket(io_);
     error_code error;
@@ -135,21 +137,28 @@ class AsioServer final : public Server {
     if (error) return true;
     socket.set_option(tcp::no_delay(true), error);
     const std::string from = text_of(remote.address());
-    if (has_room(from))
-      std::make_shared<Connection>(front_, std::move(socket), from, text_of(local.address()))->start();
+    const bool usual = has_room(from);
+    if (usual || has_spare_room())
+      std::make_shared<Connection>(front_, std::move(socket), from, text_of(local.address()), !usual)->start();
     else
       ::send(fd, no_room.data(), no_room.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     return true;
   }
 
+  template <class Which>
+  std::ptrdiff_t open_ones(Which which) const {
+    return std::ranges::count_if(front_.connections,
+                                 [&](const Connection* one) { return one->is_open() && std::invoke(which, *one); });
+  }
   /// One that waits gives way to a new one.
   bool has_room(const std::string& address) {
-    const auto open = [&](bool all) {
-      return std::count_if(front_.connections.begin(), front_.connections.end(),
-                           [&](const Connection* one) { return one->is_open() && (all || one->remote() == address); });
-    };
-    if (open(false) >= config_.connections_each && !front_.close_one(address)) return false;
-    return open(true) < config_.connections || front_.close_one("");
+    const auto usual = [](const Connection& one) { return !one.is_spare(); };
+    const auto of_address = [&](const Connection& one) { return usual(one) && one.remote() == address; };
+    if (open_ones(of_address) >= config_.connections_each && !front_.close_one(of_address)) return false;
+    return open_ones(usual) < config_.connections || front_.close_one(usual);
+  }
+  bool has_spare_room() {
+    return open_ones(&Connection::is_spare) < spare_connections || front_.close_one(&Connection::is_spare);
   }
 
   void finish(std::chrono::steady_clock::time_point end) {

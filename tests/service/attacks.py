@@ -146,20 +146,26 @@ def under(name, port, job):
         attacker.join()
 
 
-def ask(port, path="/healthz", patience=PATIENCE):
-    """@return how long the answer took [s]; at least `patience` where it was none"""
+def asked(port, path="/healthz", patience=PATIENCE):
+    """@return how long the answer took [s], and what is wrong with it or None"""
     begin = time.monotonic()
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=patience)
     try:
         connection.request("GET", path)
         answer = connection.getresponse()
-        answer.read()
-        good = answer.status == 200
-    except (OSError, http.client.HTTPException):
-        good = False
+        body = answer.read()
+        wrong = None if answer.status == 200 else f"{path}: {answer.status} {body[:300]}"
+    except (OSError, http.client.HTTPException) as e:
+        wrong = f"{path}: {e!r}"
     finally:
         connection.close()
-    return time.monotonic() - begin if good else patience
+    return time.monotonic() - begin, wrong
+
+
+def ask(port, path="/healthz", patience=PATIENCE):
+    """@return how long the answer took [s]; at least `patience` where it was none"""
+    took, wrong = asked(port, path, patience)
+    return max(took, patience) if wrong else took
 
 
 def peak_memory(pid):
