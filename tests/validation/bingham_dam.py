@@ -23,8 +23,8 @@ REMARKS = ("The front of the slow block is the point where the surface through i
            "while the artificial viscosity slowed the flow and thin cohesive soil stuck to the floor too firmly. Now "
            "inertia carries the soil half as far again as where it would stop everywhere at yield, 277 m, and its sheet, "
            "thinner than a row in the end, a third or more too far. It has not converged in the spacing. (A three-dimensional Navier-Stokes model with "
-           "a Bingham fluid found 73 % of the observed distance, Appl. Sci. 10 (2020) 6501; that our value is close "
-           "to it is no evidence.) The rate at the end follows from how a Bingham fluid comes to rest, like 1/t.")
+           "a Bingham fluid found 73 % of the observed distance, Appl. Sci. 10 (2020) 6501.) "
+           "The rate at the end follows from how a Bingham fluid comes to rest, like 1/t.")
 HALF_WIDTH, YIELD, VISCOSITY = 4.0, 0.02, 5000.0  # of the slow block: [m], tau_y/(rho g H), [Pa s]
 TIMES = [2, 5, 10, 15, 20, 30, 40]  # [s]
 SHALLOW_FROM = 5  # by then the block has become a shallow heap [s]
