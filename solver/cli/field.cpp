@@ -55,7 +55,7 @@ void use_xi(Case& problem, const fs::path& file) {
                       "is missing: the case has no random field that --xi could be the coefficients of");
   problem.field->xi.clear();
   const std::vector<double> xi = read_xi(file);
-  const std::size_t terms = RandomField(*problem.field, bounding_box(problem.model.slide), problem.model.dx).terms();
+  const std::size_t terms = make_field(problem.model, *problem.field).terms();
   if (xi.size() != terms) {
     throw ConfigError(file.string(),
                       "holds " + std::to_string(xi.size()) + " coefficients, the field takes " + std::to_string(terms) +
