@@ -214,9 +214,7 @@ void check_field(const Case& c, const SourceLocations& origins, Faults& faults) 
     faults.add("/random_field/data", "cannot be met: the standard deviation of the field is 0");
   check_field_data(origins.field_data, f.domain.value_or(box), faults);
   if (f.trend == 0.0) return;
-  double deepest = 0.0;
-  for (const SlidePart& part : c.model.slide)
-    for (const Vec2 v : part.outline) deepest = std::max(deepest, depth_below_surface(c.model.slide, v));
+  double deepest = greatest_depth(c.model.slide);
   for (const FieldDatum& datum : f.data) deepest = std::max(deepest, depth_below_surface(c.model.slide, datum.x));
   for (const Material& m : c.model.materials) {
     const double phi = f.mean ? std::atan(*f.mean) : f.mu ? std::atan(std::exp(*f.mu)) : m.phi;

@@ -49,23 +49,26 @@ Lengths read_lengths(ObjectReader& in, const std::string& key, const std::string
   return found;
 }
 
-/// The one form of lengths that is given, in faults if there is none or more than one.
+/// Faults unless exactly one form of lengths is given, whole.
 void check_lengths(ObjectReader& in) {
-  const std::string_view forms[][2] = {{"correlation_length_m"},
-                                       {"correlation_length_x_m", "correlation_length_y_m"},
-                                       {"scale_of_fluctuation_m"},
-                                       {"scale_of_fluctuation_x_m", "scale_of_fluctuation_y_m"}};
-  std::string_view first;  // a key of the form that is given
-  for (const auto& form : forms) {
-    const auto given = [&](std::string_view key) { return !key.empty() && in.find(key) != nullptr; };
-    if (!given(form[0]) && !given(form[1])) continue;
-    for (const std::string_view key : form)
-      if (!key.empty() && !given(key)) in.fault(key, "is missing; " + length.describe());
-    if (!first.empty())
-      in.fault(first, "is given beside " + std::string(given(form[0]) ? form[0] : form[1]) + "; give one form");
-    if (first.empty()) first = given(form[0]) ? form[0] : form[1];
+  using Keys = std::vector<std::string>;
+  const Keys forms[] = {{"correlation_length_m"},
+                        {"correlation_length_x_m", "correlation_length_y_m"},
+                        {"scale_of_fluctuation_m"},
+                        {"scale_of_fluctuation_x_m", "scale_of_fluctuation_y_m"}};
+  const auto given = [&](const std::string& key) { return in.find(key) != nullptr; };
+  std::vector<Keys> found;
+  for (const Keys& form : forms)
+    if (std::ranges::any_of(form, given)) found.push_back(form);
+  if (found.empty()) found.push_back({"correlation_length_m"});
+  if (found.size() > 1) {
+    const std::string& first = *std::ranges::find_if(found[0], given);
+    in.fault(first, "is given beside " + found[1].front() + (found[1].size() > 1 ? " or " + found[1].back() : "") +
+                        "; give one form");
+    return;
   }
-  if (first.empty()) in.fault("correlation_length_m", "is missing; " + length.describe());
+  for (const std::string& key : found[0])
+    if (!given(key)) in.fault(key, "is missing; " + length.describe());
 }
 
 void read_correlation(ObjectReader& in, FieldSpec& spec) {

@@ -57,6 +57,16 @@ double depth_below_surface(std::span<const SlidePart> slide, Vec2 point) {
   return depth;
 }
 
+double greatest_depth(std::span<const SlidePart> slide) {
+  double greatest = 0.0;
+  for (const SlidePart& from : slide)
+    for (const Vec2 v : from.outline)  // between vertices the depth is linear
+      for (const SlidePart& part : slide)
+        if (const std::vector<double> y = crossings(part.outline, v.x); !y.empty())
+          greatest = std::max(greatest, depth_below_surface(slide, {v.x, y.front()}));
+  return greatest;
+}
+
 int material_at(std::span<const SlidePart> slide, Vec2 point) {
   for (const SlidePart& part : slide) {
     const std::vector<double> y = crossings(part.outline, point.x);

@@ -28,6 +28,9 @@ double thickness_above(std::span<const Vec2> outline, Vec2 point);
 /// Depth of a point below the highest outline above or below it [m], >= 0; 0 beside the outlines.
 double depth_below_surface(std::span<const SlidePart> slide, Vec2 point);
 
+/// The greatest depth of a point of the outlines [m].
+double greatest_depth(std::span<const SlidePart> slide);
+
 /// The material of the first outline that a point lies in, or 0.
 int material_at(std::span<const SlidePart> slide, Vec2 point);
 

@@ -69,6 +69,19 @@ std::vector<double> log_medians_at(const Model& model, const FieldSpec& spec, co
   return mu;
 }
 
+FieldSpread field_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan) {
+  std::vector<Vec2> points;
+  for (const SoilPoint& point : plan.soil) points.push_back(point.x);
+  const RandomField field = make_field(model, spec);
+  const std::vector<double> mu = log_medians_at(model, spec, field, points, material_properties(model, plan).tan_phi);
+  FieldSpread spread{lognormal(field.gaussian(points, std::vector<double>(field.terms(), 0.0)), mu, spec.sigma), {}};
+  const std::vector<double> variance = field.conditional_variance(points);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    spread.stdev_phi.push_back(std::abs(spec.sigma) * std::sqrt(variance[i]) *
+                               std::sin(2 * std::atan(spread.median_tan_phi[i])) / 2);
+  return spread;
+}
+
 FieldSummary field_summary(const FieldSpec& spec, const RandomField& field) {
   return {.captured_variance = field.captured_variance(),
           .cov = coefficient_of_variation(spec.sigma, field.variance()),

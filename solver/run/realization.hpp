@@ -39,6 +39,13 @@ RandomField make_field(const Model& model, const FieldSpec& spec);
 std::vector<double> log_medians_at(const Model& model, const FieldSpec& spec, const RandomField& field,
                                    std::span<const Vec2> points, std::span<const double> tan_phi);
 
+/// What the realizations of a field have in common at points: the median of tan(phi) [-], given the data, and the
+/// standard deviation of phi [rad], to first order sigma sqrt(V) sin(2 phi) / 2.
+struct FieldSpread {
+  std::vector<double> median_tan_phi, stdev_phi;
+};
+FieldSpread field_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan);
+
 /// What is known of a field before anything is drawn: all of the summary but the mean friction angle.
 FieldSummary field_summary(const FieldSpec& spec, const RandomField& field);
 
