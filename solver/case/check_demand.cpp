@@ -63,6 +63,7 @@ void check_steps(const Model& model, Faults& faults) {
 
 void check_modes(const Case& c, Faults& faults) {
   if (!c.field || c.field->sampler != FieldSampler::karhunen_loeve) return;
+  if (c.field->covariance != Covariance::exponential) return;  // their modes are counted where they are solved
   const Box domain = c.field->domain.value_or(bounding_box(c.model.slide));
   if (c.field->along_x()) check_correlation(c.field->ell_x, domain.width(), "x", faults);
   if (c.field->along_y()) check_correlation(c.field->ell_y, domain.height(), "y", faults);

@@ -5,6 +5,7 @@
 #include "case/outline.hpp"
 #include "case/overlay.hpp"
 #include "case/sections.hpp"
+#include "math/angle.hpp"
 #include "particles/geometry.hpp"
 #include "particles/ground.hpp"
 #include "simulation/particle_setup.hpp"
@@ -13,6 +14,8 @@
 
 namespace talus {
 namespace {
+
+constexpr double most_trend_angle = radians(89.0);  ///< as of friction_angle_deg
 
 void check_apart(const Model& model, const SourceLocations& origins, Faults& faults) {
   for (std::size_t a = 0; a < model.slide.size(); ++a)
@@ -157,6 +160,17 @@ void warn_of_unused_keys(const FieldSpec& f, std::vector<Fault>& warnings) {
     warnings.push_back({"/random_field/grid_spacing_m", "is not used: sampler is karhunen_loeve"});
 }
 
+/// Two keys that only the product modes of the separable exponential covariance have.
+void check_covariance(const FieldSpec& f, Faults& faults) {
+  if (f.covariance == Covariance::exponential || f.sampler != FieldSampler::karhunen_loeve) return;
+  if (f.truncation == Truncation::diagonal)
+    faults.add("/random_field/truncation",
+               "\"diagonal\" pairs modes along x with modes along y, which only covariance exponential has; allowed: "
+               "largest, variance_share");
+  if (f.root_intervals == RootIntervals::paper)
+    faults.add("/random_field/root_intervals", "\"paper\" is for covariance exponential; allowed: complete");
+}
+
 }  // namespace
 
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults) {
@@ -184,11 +198,34 @@ void check_choices(const Case& c, Faults& faults) {
       if (m.phi <= 0.0)
         faults.add("/random_field",
                    "needs log_mean or mean_tan_phi: material " + in_quotes(m.name) + " has no friction angle to vary");
+  check_covariance(*c.field, faults);
   const bool counted =
-      c.field->sampler == FieldSampler::karhunen_loeve && c.field->truncation != Truncation::variance_share;
+      c.field->sampler == FieldSampler::karhunen_loeve && c.field->truncation != Truncation::variance_share &&
+      c.field->covariance == Covariance::exponential && c.field->nugget == 0.0 && c.field->data.empty();
   if (counted && !c.field->xi.empty() && c.field->xi.size() != static_cast<std::size_t>(c.field->terms))
     faults.add("/random_field/xi", "has " + std::to_string(c.field->xi.size()) + " coefficients, terms is " +
                                        std::to_string(c.field->terms));
+}
+
+void check_field(const Case& c, const SourceLocations& origins, Faults& faults) {
+  const FieldSpec& f = *c.field;
+  const Box box = bounding_box(c.model.slide);
+  if (!f.data.empty() && f.sigma == 0.0)
+    faults.add("/random_field/data", "cannot be met: the standard deviation of the field is 0");
+  check_field_data(origins.field_data, f.domain.value_or(box), faults);
+  if (f.trend == 0.0) return;
+  double deepest = greatest_depth(c.model.slide);
+  for (const FieldDatum& datum : f.data) deepest = std::max(deepest, depth_below_surface(c.model.slide, datum.x));
+  for (const Material& m : c.model.materials) {
+    const double phi = f.mean ? std::atan(*f.mean) : f.mu ? std::atan(std::exp(*f.mu)) : m.phi;
+    const double at_depth = phi + f.trend * deepest;
+    if (at_depth > 0.0 && at_depth < most_trend_angle) continue;
+    faults.add("/random_field/trend_deg_per_m",
+               "makes a median friction angle of " + rounded(degrees(at_depth)) + " deg at the depth of " +
+                   rounded(deepest) + " m, from " + rounded(degrees(phi)) +
+                   " deg at the surface; it must stay between 0 and " + rounded(degrees(most_trend_angle)) + " deg");
+    return;
+  }
 }
 
 void warn_of_thin_front(const Model& model, std::vector<Fault>& warnings) {

@@ -72,11 +72,12 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
             [&](ObjectReader& section) { read_walls(section, m.walls, bed); });
   in.object("time", "When to stop and what to keep.", Absent::fault,
             [&](ObjectReader& section) { read_time(section, m.time); });
-  in.object("random_field",
-            "Lognormal random field of tan(phi), covariance exp(-|dx|/lx - |dy|/ly) of its logarithm. Give one "
-            "correlation_length_m, or both of x and y; log_stdev (and log_mean), or cov_tan_phi (and mean_tan_phi). "
-            "Without this section the friction angle is the material's everywhere.",
-            Absent::skip, [&](ObjectReader& section) { read_field(section, c.field.emplace()); });
+  in.object(
+      "random_field",
+      "Lognormal random field of tan(phi). Give one correlation_length_m, or both of x and y, or scales of fluctuation "
+      "in the same way; log_stdev (and log_mean), or cov_tan_phi (and mean_tan_phi). "
+      "Without this section the friction angle is the material's everywhere.",
+      Absent::skip, [&](ObjectReader& section) { read_field(section, c.field.emplace(), m.dx, directory, origins); });
   in.object("study", "Monte Carlo over realizations of the random field.", Absent::defaults,
             [&](ObjectReader& section) { read_study(section, c.study); });
   return c;
@@ -109,6 +110,8 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
       free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/max_particles", "/walls", "/particle_placement"}))
     check_geometry(out.value.model, origins, faults);
   if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
+  if (shaped && out.value.field && free_of_faults({"/terrain", "/slide", "/random_field"}))
+    check_field(out.value, origins, faults);
   if (faults.empty()) {
     check_steps(out.value.model, faults);
     check_modes(out.value, faults);

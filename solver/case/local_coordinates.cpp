@@ -45,6 +45,8 @@ void use_local_coordinates(Case& c) {
   m.terrain.run_out.from = local(m.terrain.run_out.from, origin.x);
   for (Boundary& boundary : m.boundaries) move(boundary.line.vertices, origin);
   for (SlidePart& part : m.slide) move(part.outline, origin);
+  if (c.field)
+    for (FieldDatum& datum : c.field->data) datum.x = {local(datum.x.x, origin.x), local(datum.x.y, origin.y)};
   if (c.field && c.field->domain) {
     Box& domain = *c.field->domain;
     domain = {{local(domain.lo.x, origin.x), local(domain.lo.y, origin.y)},

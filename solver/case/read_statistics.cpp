@@ -1,7 +1,10 @@
 // The keys of random_field and study. Defaults are those of the structs.
 
+#include <algorithm>
+
 #include "case/sections.hpp"
 #include "case/vertices.hpp"
+#include "math/angle.hpp"
 #include "random_field/random_field.hpp"
 #include "support/text.hpp"
 
@@ -23,31 +26,92 @@ constexpr Names<RootIntervals> intervals[] = {{"complete", RootIntervals::comple
 constexpr Names<Sampling> samplings[] = {{"monte_carlo", Sampling::monte_carlo},
                                          {"latin_hypercube", Sampling::latin_hypercube}};
 
-void read_correlation(ObjectReader& in, FieldSpec& spec) {
+constexpr Names<Covariance> covariances[] = {{"exponential", Covariance::exponential},
+                                             {"exponential_isotropic", Covariance::exponential_isotropic},
+                                             {"squared_exponential", Covariance::squared_exponential},
+                                             {"matern_3_2", Covariance::matern_3_2},
+                                             {"matern_5_2", Covariance::matern_5_2},
+                                             {"cosine_exponential", Covariance::cosine_exponential}};
+
+/// Lengths along x and y, given as one or as two.
+struct Lengths {
   std::optional<double> both, x, y;
-  in.optional_number("correlation_length_m", both, length,
-                     {"Correlation length along x and y; half the scale of fluctuation.",
-                      "site investigation; [Z20] Table 4", "none"});
-  in.optional_number("correlation_length_x_m", x, length,
-                     {"Correlation length along x.", "site investigation", "none"});
-  in.optional_number("correlation_length_y_m", y, length,
-                     {"Correlation length along y.", "site investigation", "none"});
-  in.one_form({{{"correlation_length_m"}}, {{"correlation_length_x_m", "correlation_length_y_m"}}});
-  const auto given = [&](const char* key) { return in.find(key) != nullptr; };
-  const bool one_axis = given("correlation_length_x_m") || given("correlation_length_y_m");
-  const auto require = [&](const char* key) {
-    if (!given(key)) in.fault(key, "is missing; " + length.describe());
-  };
-  if (given("correlation_length_m") && one_axis) {
-    in.fault("correlation_length_m", "is given beside correlation_length_x_m or correlation_length_y_m; give one form");
-  } else if (one_axis) {
-    require("correlation_length_x_m");
-    require("correlation_length_y_m");
-  } else {
-    require("correlation_length_m");
+};
+
+/// Declares and reads KEY_m, KEY_x_m and KEY_y_m.
+Lengths read_lengths(ObjectReader& in, const std::string& key, const std::string& sentence, const std::string& source) {
+  Lengths found;
+  in.optional_number(key + "_m", found.both, length, {sentence + " along x and y.", source, "none"});
+  in.optional_number(key + "_x_m", found.x, length,
+                     {sentence + " along x, with a dip along the bedding.", source, "none"});
+  in.optional_number(key + "_y_m", found.y, length,
+                     {sentence + " along y, with a dip across the bedding.", source, "none"});
+  return found;
+}
+
+/// Faults unless exactly one form of lengths is given, whole.
+void check_lengths(ObjectReader& in) {
+  using Keys = std::vector<std::string>;
+  const Keys forms[] = {{"correlation_length_m"},
+                        {"correlation_length_x_m", "correlation_length_y_m"},
+                        {"scale_of_fluctuation_m"},
+                        {"scale_of_fluctuation_x_m", "scale_of_fluctuation_y_m"}};
+  const auto given = [&](const std::string& key) { return in.find(key) != nullptr; };
+  std::vector<Keys> found;
+  for (const Keys& form : forms)
+    if (std::ranges::any_of(form, given)) found.push_back(form);
+  if (found.empty()) found.push_back({"correlation_length_m"});
+  if (found.size() > 1) {
+    const std::string& first = *std::ranges::find_if(found[0], given);
+    in.fault(first, "is given beside " + found[1].front() + (found[1].size() > 1 ? " or " + found[1].back() : "") +
+                        "; give one form");
+    return;
   }
-  spec.ell_x = x.value_or(both.value_or(spec.ell_x));
-  spec.ell_y = y.value_or(both.value_or(spec.ell_y));
+  for (const std::string& key : found[0])
+    if (!given(key)) in.fault(key, "is missing; " + length.describe());
+}
+
+void read_correlation(ObjectReader& in, FieldSpec& spec) {
+  in.choice(
+      "covariance", spec.covariance, covariances,
+      {"Correlation of ln(tan phi), with r^2 = (dx/lx)^2 + (dy/ly)^2 and l the correlation length. exponential: "
+       "exp(-|dx|/lx - |dy|/ly); exponential_isotropic: exp(-r); squared_exponential: exp(-r^2); matern_3_2: (1 + "
+       "sqrt(3) r) exp(-sqrt(3) r); matern_5_2: (1 + sqrt(5) r + 5 r^2/3) exp(-sqrt(5) r); cosine_exponential: "
+       "exp(-|dx|/lx - |dy|/ly) cos(dx/lx) cos(dy/ly).",
+       "[Z20] Eq. 13; Vanmarcke 1983; Rasmussen & Williams 2006 for matern"});
+  if (spec.covariance == Covariance::exponential) in.remove_record("covariance");  // keeps the hash of earlier cases
+  const Lengths ell = read_lengths(in, "correlation_length", "Correlation length", "site investigation; [Z20] Table 4");
+  const Lengths theta =
+      read_lengths(in, "scale_of_fluctuation",
+                   "Scale of fluctuation, in place of the correlation length: 2 l for exponential and "
+                   "exponential_isotropic, 1.772 l "
+                   "for squared_exponential, 2.309 l for matern_3_2, 2.385 l for matern_5_2, l for cosine_exponential;",
+                   "site investigation; Vanmarcke 1983");
+  in.one_form({{{"correlation_length_m"}},
+               {{"correlation_length_x_m", "correlation_length_y_m"}},
+               {{"scale_of_fluctuation_m"}},
+               {{"scale_of_fluctuation_x_m", "scale_of_fluctuation_y_m"}}});
+  check_lengths(in);
+  const double factor = scale_of_fluctuation_factor(spec.covariance);
+  const auto choose = [&](std::optional<double> own_ell, std::optional<double> own_theta, double fallback) {
+    if (own_ell || ell.both) return own_ell ? *own_ell : *ell.both;
+    if (own_theta || theta.both) return (own_theta ? *own_theta : *theta.both) / factor;
+    return fallback;
+  };
+  spec.ell_x = choose(ell.x, theta.x, spec.ell_x);
+  spec.ell_y = choose(ell.y, theta.y, spec.ell_y);
+  double dip = 0.0;
+  in.number("dip_deg", dip, {"deg", -90.0, 90.0},
+            {"Angle by which the bedding falls towards +x: the axes of the correlation lengths, and of direction, are "
+             "turned by it.",
+             "geological mapping"});
+  spec.dip = radians(dip);
+  if (dip == 0.0) in.remove_record("dip_deg");
+  in.number("nugget", spec.nugget, {"", 0.0, 1.0, false, true},
+            {"Share of the variance that varies from particle to particle without correlation. It is drawn for every "
+             "particle, so that cell_average does not reduce it and another spacing draws other values.",
+             "site investigation"});
+  if (spec.nugget == 0.0) in.remove_record("nugget");
 }
 
 /// Either the mean and standard deviation of ln(tan phi), or the mean and coefficient of variation of tan(phi). Without
@@ -85,6 +149,15 @@ void read_marginal(ObjectReader& in, FieldSpec& spec) {
   if (cov) spec.sigma = log_stdev(*cov);
 }
 
+/// Particle spacings in a correlation length below which the field is averaged over cells by default.
+constexpr double spacings_resolved = 4.0;
+
+/// The shortest correlation length of the axes along which the field varies [m].
+double shortest_length(const FieldSpec& spec) {
+  if (!spec.along_y()) return spec.ell_x;
+  return spec.along_x() ? std::min(spec.ell_x, spec.ell_y) : spec.ell_y;
+}
+
 void read_domain(ObjectReader& in, std::optional<Box>& domain) {
   in.object("domain_m", "Rectangle for which the modes are solved. Default: bounding box of the slide; source: user.",
             Absent::skip, [&](ObjectReader& box) {
@@ -104,7 +177,8 @@ void read_domain(ObjectReader& in, std::optional<Box>& domain) {
 
 }  // namespace
 
-void read_field(ObjectReader& in, FieldSpec& spec) {
+void read_field(ObjectReader& in, FieldSpec& spec, double dx, const std::filesystem::path& directory,
+                SourceLocations& origins) {
   read_correlation(in, spec);
   read_marginal(in, spec);
   in.choice("direction", spec.direction, directions, {"Axes along which the field varies.", "[Z20] Eqs. 11, 23"});
@@ -124,8 +198,10 @@ void read_field(ObjectReader& in, FieldSpec& spec) {
   in.choice("root_intervals", spec.root_intervals, intervals,
             {"complete: every mode once; paper: the printed intervals, which skip every other mode.",
              "[Z20] Eqs. 15, 21 for paper"});
+  spec.cell_average = shortest_length(spec) < spacings_resolved * dx * (1.0 - 1e-9);
   in.flag("cell_average", spec.cell_average,
-          {"Average the field over each particle's cell (variance reduction).", "Vanmarcke 1983"});
+          {"Average the field over each particle's cell (variance reduction).", "Vanmarcke 1983",
+           "true where a correlation length is under four particle spacings"});
   read_domain(in, spec.domain);
   in.numbers(
       "xi", spec.xi, {"", -40.0, 40.0}, {0, 1'000'000},
@@ -134,6 +210,16 @@ void read_field(ObjectReader& in, FieldSpec& spec) {
                      {"Grid of the circulant embedding. It does not depend on the particle spacing, and a realization "
                       "is the same field at every spacing. Particles take the value of the nearest node.",
                       "numerical", "a tenth of the correlation length along each axis"});
+  origins.field_data = read_field_data(in, directory);
+  spec.data = origins.field_data.values;
+  if (!origins.field_data.form.empty()) origins.files.push_back(origins.field_data.form);
+  double trend = 0.0;
+  in.number("trend_deg_per_m", trend, {"deg/m", -10.0, 10.0},
+            {"Increase of the median friction angle with every metre below the ground surface before the slide; the "
+             "angle at the surface is that of log_mean or the material (with mean_tan_phi: of the mean).",
+             "laboratory, soundings"});
+  spec.trend = radians(trend);
+  if (trend == 0.0) in.remove_record("trend_deg_per_m");
 }
 
 void read_study(ObjectReader& in, StudySpec& s) {

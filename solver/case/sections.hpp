@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "case/field_data.hpp"
 #include "case/load.hpp"
 #include "case/vertices.hpp"
 
@@ -14,6 +15,7 @@ namespace talus {
 struct SourceLocations {
   Vertices bed;
   std::vector<Vertices> outlines;  ///< of each slide part
+  FieldData field_data;            ///< of the random field
   std::vector<std::string> files;  ///< CSV files with the form in which they were read
 
   void note_file(const Vertices& v) {
@@ -60,7 +62,11 @@ void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& dir
                   double dx, SourceLocations& origins);
 
 // read_statistics.cpp
-void read_field(ObjectReader& in, FieldSpec& spec);
+/// @param dx  particle spacing [m]; the default of cell_average depends on it
+/// @param directory  where CSV files lie
+/// @param origins  returns where the data are written
+void read_field(ObjectReader& in, FieldSpec& spec, double dx, const std::filesystem::path& directory,
+                SourceLocations& origins);
 void read_study(ObjectReader& in, StudySpec& s);
 
 // local_coordinates.cpp
@@ -74,6 +80,9 @@ void use_local_coordinates(Case& c);
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults);
 /// Enough wall layers, friction where a field needs it, given coefficients as many as the field takes.
 void check_choices(const Case& c, Faults& faults);
+
+/// Data in the rectangle of the random field, a median friction angle that the trend keeps in range.
+void check_field(const Case& c, const SourceLocations& origins, Faults& faults);
 
 // check_demand.cpp: numbers within their ranges that together ask for more than any run can do
 /// At most 1e9 time steps. @param model  without faults

@@ -4,121 +4,16 @@
 #include <cctype>
 #include <span>
 
-#include "support/csv.hpp"
+#include "case/survey_text.hpp"
 #include "support/text.hpp"
 
 namespace talus {
 namespace {
 
-using Names = std::span<const std::string_view>;
-constexpr std::string_view distance_names[] = {"x", "distance", "chainage", "station", "offset"};
-constexpr std::string_view elevation_names[] = {"y", "z", "elevation", "height"};
-constexpr std::string_view other_units[] = {"mm", "cm", "dm", "km", "ft", "feet", "in", "inch", "yd", "mi", "miles"};
 constexpr std::string_view feet[] = {"ft", "feet"};
-constexpr std::string_view no_elevations[] = {"depth",      "depths", "thickness", "cover",
-                                              "overburden", "below",  "bgl",       "mbgl"};
 constexpr std::string_view metres[] = {"m", "metre", "metres", "meter", "meters"};
 constexpr const char* names_allowed =
     "distance: x, distance, chainage, station or offset; elevation: y, z, elevation or height";
-
-bool contains(Names names, std::string_view word) { return std::ranges::find(names, word) != names.end(); }
-
-struct Line {
-  int number;
-  std::string_view text;
-  bool comment;
-};
-
-std::string_view without_blanks(std::string_view text) {
-  constexpr std::string_view blanks = " \t";
-  const std::size_t first = text.find_first_not_of(blanks);
-  return first == std::string_view::npos ? std::string_view()
-                                         : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-/// The lines that are not blank; those that end with CR alone are lines as well.
-std::vector<Line> lines_of(std::string_view text, std::size_t most) {
-  std::vector<Line> lines;
-  for (int number = 1; !text.empty() && lines.size() < most; ++number) {
-    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-    std::string_view line = without_blanks(text.substr(0, end));
-    text.remove_prefix(text.substr(end).starts_with("\r\n") ? end + 2 : std::min(end + 1, text.size()));
-    const bool comment = line.starts_with('#');
-    if (comment) line = without_blanks(line.substr(1));
-    if (!line.empty()) lines.push_back({number, line, comment});
-  }
-  return lines;
-}
-
-/// Cells of a line; empty ones at its end, as spreadsheets leave them, are dropped.
-std::vector<std::string> cells_of(std::string_view line, char separator) {
-  std::vector<std::string> cells = split_fields(line, separator);
-  for (std::string& cell : cells) cell = without_blanks(cell);
-  while (!cells.empty() && cells.back().empty()) cells.pop_back();
-  return cells;
-}
-
-/// Whether the cell holds a decimal comma: digits, one comma, no point.
-bool has_decimal_comma(std::string_view cell) {
-  const std::size_t comma = cell.find(',');
-  return comma != std::string_view::npos && comma > 0 && std::isdigit(static_cast<unsigned char>(cell[comma - 1])) &&
-         cell.find_first_of(",.", comma + 1) == std::string_view::npos && cell.find('.') == std::string_view::npos;
-}
-
-/// The cell with a decimal point.
-std::string with_point(std::string cell) {
-  if (has_decimal_comma(cell)) cell[cell.find(',')] = '.';
-  return cell;
-}
-
-bool is_number(const std::string& cell) { return to_number(with_point(cell)).has_value(); }
-
-bool is_row_of_numbers(const std::vector<std::string>& cells) { return std::ranges::count_if(cells, is_number) >= 2; }
-
-/// The separator that gives the most rows of numbers, and nothing where none gives any. A comma comes last: in the
-/// others it may be a decimal comma.
-std::optional<char> find_separator(const std::vector<Line>& lines) {
-  std::optional<char> best;
-  std::ptrdiff_t most = 0;
-  for (const char separator : {';', '\t', ' ', ','}) {
-    const auto rows = std::ranges::count_if(
-        lines, [&](const Line& line) { return !line.comment && is_row_of_numbers(cells_of(line.text, separator)); });
-    if (rows > most) {
-      most = rows;
-      best = separator;
-    }
-  }
-  return best;
-}
-
-/// Words of letters and digits, in lower case; at least one, which may be empty.
-std::vector<std::string> words_of(std::string_view text) {
-  std::vector<std::string> words(1);
-  for (const char c : text) {
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || (static_cast<unsigned char>(c) & 0x80U) != 0)
-      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    else if (!words.back().empty())
-      words.emplace_back();
-  }
-  if (words.size() > 1 && words.back().empty()) words.pop_back();
-  return words;
-}
-
-/// The first of the words that is among the names, or "".
-std::string first_of(const std::vector<std::string>& words, Names names) {
-  const auto found = std::ranges::find_if(words, [&](const std::string& word) { return contains(names, word); });
-  return found == words.end() ? "" : *found;
-}
-
-/// The unit other than metres that a heading names, or "". "in" is a unit only at the end; x' may be feet.
-std::string other_unit(std::string_view cell) {
-  std::vector<std::string> words = words_of(cell);
-  if (cell.ends_with('\'')) return "feet (')";
-  const bool inches = words.back() == "in";
-  std::erase(words, "in");
-  const std::string unit = first_of(words, other_units);
-  return unit.empty() && inches ? "in" : unit;
-}
 
 /// A heading such as "Elevation (m)" or chainage_m: its name in lower case and its unit.
 struct Heading {
@@ -129,7 +24,7 @@ struct Heading {
     name = words.front();
     unit = words.size() > 1 ? words[1] : "";
     const bool bracketed = cell.find_first_of("([") != std::string_view::npos;
-    if (!bracketed && words.size() > 1 && !unit.empty() && unit != "m" && !contains(other_units, unit)) name.clear();
+    if (!bracketed && words.size() > 1 && !unit.empty() && unit != "m" && !is_other_unit(unit)) name.clear();
   }
 };
 
@@ -168,7 +63,7 @@ std::string list_of(const std::vector<std::string>& cells) {
 /// A table as lines of cells: headings first, then from `first_row` on numbers.
 struct Table {
   char separator;
-  std::vector<Line> lines;
+  std::vector<TableLine> lines;
   std::size_t first_row = 0;
 
   std::vector<std::string> cells(std::size_t k) const { return cells_of(lines[k].text, separator); }
@@ -189,7 +84,7 @@ bool refuse_headings(const Table& table, Columns columns, LineFaults& found) {
     }
     if (!first_of(words, feet).empty() && first_of(words, metres).empty())
       return refuse(k, in_quotes(table.lines[k].text) + " names feet; metres are needed");
-    if (columns.y < cells.size() && cells.size() >= 2 && !first_of(words_of(cells[columns.y]), no_elevations).empty())
+    if (columns.y < cells.size() && cells.size() >= 2 && !first_of(words_of(cells[columns.y]), depth_names).empty())
       return refuse(k, "column " + in_quotes(cells[columns.y]) +
                            " is a depth or a thickness; the elevation is needed, upwards in metres");
   }
@@ -197,12 +92,12 @@ bool refuse_headings(const Table& table, Columns columns, LineFaults& found) {
 }
 
 /// What a file without a row of two numbers holds in its first line that has a digit.
-std::string no_rows_message(const std::vector<Line>& lines) {
+std::string no_rows_message(const std::vector<TableLine>& lines) {
   const std::string message =
       "has no row of two numbers, distance and elevation in metres, separated by comma, semicolon, tab or blanks";
   const auto is_digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
-  const auto line =
-      std::ranges::find_if(lines, [&](const Line& l) { return !l.comment && std::ranges::any_of(l.text, is_digit); });
+  const auto line = std::ranges::find_if(
+      lines, [&](const TableLine& l) { return !l.comment && std::ranges::any_of(l.text, is_digit); });
   if (line == lines.end()) return message;
   return message + "; line " + std::to_string(line->number) + " reads " + in_quotes(line->text) +
          (has_station(line->text) ? no_stations : "");
@@ -243,11 +138,7 @@ std::optional<Columns> choose_columns(const Table& table, LineFaults& found) {
 }
 
 std::string form_of(const Columns& columns, char separator, bool decimal_commas) {
-  const char* name = separator == ';'    ? "semicolons"
-                     : separator == '\t' ? "tabs"
-                     : separator == ' '  ? "blanks"
-                                         : "commas";
-  return "columns " + columns.x_name + " and " + columns.y_name + ", separated by " + name +
+  return "columns " + columns.x_name + " and " + columns.y_name + ", separated by " + separator_name(separator) +
          (decimal_commas ? ", decimal commas" : "");
 }
 
@@ -295,7 +186,7 @@ SurveyTable read_survey_table(std::string_view text, std::size_t most, LineFault
   std::vector<SurveyRow> rows;
   bool points = false, commas = false;
   for (std::size_t k = 0; k < table.lines.size() && rows.size() < most; ++k) {
-    const Line& line = table.lines[k];
+    const TableLine& line = table.lines[k];
     if (line.comment) continue;
     const std::vector<std::string> cells = table.cells(k);
     const bool whole = cells.size() >= needed;

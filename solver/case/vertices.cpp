@@ -111,7 +111,24 @@ bool lies_in(const std::filesystem::path& file, const std::filesystem::path& dir
   return error || std::ranges::mismatch(base, target).in1 == base.end();  // reading reports what is missing
 }
 
-/// The text of a CSV in the case's directory or below; any other name is refused before a file is opened.
+void declare_vertices(ObjectReader& in, const std::string& inline_key, const std::string& csv_key, Size count,
+                      const KeyText& text) {
+  const Json point = {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", number_schema(coordinate)}};
+  in.declare(inline_key, {{"type", "array"}, {"minItems", count.least}, {"maxItems", count.most}, {"items", point}},
+             text,
+             "Unit: m; range: each coordinate >= -1e8 and <= 1e8, " + std::to_string(count.least) + " to " +
+                 std::to_string(count.most) + " vertices; ");
+  in.declare(
+      csv_key, {{"type", "string"}, {"minLength", 1}, {"pattern", csv_name_pattern}},
+      {"The same as a CSV file beside the case or in a directory below it: distance and elevation in metres, separated "
+       "by comma, semicolon, tab or blanks. With more than two columns a header must name the two: x, distance, "
+       "chainage, station or offset; y, z, elevation or height.",
+       text.source},
+      "");
+}
+
+}  // namespace
+
 std::optional<std::string> csv_text(const Json& value, const std::string& pointer,
                                     const std::filesystem::path& directory, Faults& faults) {
   const std::string* name = value.get_ptr<const std::string*>();
@@ -133,24 +150,6 @@ std::optional<std::string> csv_text(const Json& value, const std::string& pointe
   }
   return {};
 }
-
-void declare_vertices(ObjectReader& in, const std::string& inline_key, const std::string& csv_key, Size count,
-                      const KeyText& text) {
-  const Json point = {{"type", "array"}, {"minItems", 2}, {"maxItems", 2}, {"items", number_schema(coordinate)}};
-  in.declare(inline_key, {{"type", "array"}, {"minItems", count.least}, {"maxItems", count.most}, {"items", point}},
-             text,
-             "Unit: m; range: each coordinate >= -1e8 and <= 1e8, " + std::to_string(count.least) + " to " +
-                 std::to_string(count.most) + " vertices; ");
-  in.declare(
-      csv_key, {{"type", "string"}, {"minLength", 1}, {"pattern", R"(^[^./\\][^/\\]*(/[^./\\][^/\\]*)*$)"}},
-      {"The same as a CSV file beside the case or in a directory below it: distance and elevation in metres, separated "
-       "by comma, semicolon, tab or blanks. With more than two columns a header must name the two: x, distance, "
-       "chainage, station or offset; y, z, elevation or height.",
-       text.source},
-      "");
-}
-
-}  // namespace
 
 std::string Vertices::location(std::size_t k) const {
   return lines.empty() ? pointer_to(source, k) : source + ":" + std::to_string(lines[k]);

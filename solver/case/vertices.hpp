@@ -2,6 +2,7 @@
 // Polylines of a case: inline in the JSON or in a CSV file beside it.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,13 @@ Vertices read_vertices(ObjectReader& in, std::string_view key, Size count, const
 /// The vertices of a table of distances and elevations [m], in any form that read_survey_table takes and any encoding
 /// that decoded() tells.
 Vertices read_csv(std::string_view text, const std::string& name, Faults& faults);
+
+/// Names of CSV files that are read, as a pattern of JSON Schema.
+inline constexpr const char* csv_name_pattern = R"(^[^./\\][^/\\]*(/[^./\\][^/\\]*)*$)";
+
+/// The text of a CSV in the case's directory or below; any other name is refused before a file is opened.
+std::optional<std::string> csv_text(const Json& value, const std::string& pointer,
+                                    const std::filesystem::path& directory, Faults& faults);
 
 /// "(3, 4.5)"
 std::string to_text(Vec2 p);

@@ -53,7 +53,7 @@ Demand measure(const Case& c) {
   d.memory = run_memory(static_cast<double>(d.soil + d.wall));
   d.flow = flow_constants(c.model);
   if (c.field) {
-    const RandomField field(*c.field, bounding_box(c.model.slide), c.model.dx);
+    const RandomField field = make_field(c.model, *c.field);
     d.field = field_summary(*c.field, field);
   }
   d.warnings = warnings_before_run(c, plan, d.field.value_or(FieldSummary{}));

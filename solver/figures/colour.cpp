@@ -24,7 +24,9 @@ const ColourScale& scale_of(Colour colour) {
       {"speed (m/s)", &plasma_on_white, [](const Frame& f, std::size_t i) { return norm(f.velocity[i]); }},
       {"friction angle (°)", &viridis, [](const Frame& f, std::size_t i) { return friction_angle_deg(f.tan_phi[i]); }},
       {"displacement (m)", &magma_on_white, [](const Frame& f, std::size_t i) { return norm(f.displacement[i]); }},
-      {"pressure (kPa)", &cividis, [](const Frame& f, std::size_t i) { return f.pressure[i] / 1000.0; }}};
+      {"pressure (kPa)", &cividis, [](const Frame& f, std::size_t i) { return f.pressure[i] / 1000.0; }},
+      {"standard deviation (°)", &magma_on_white,
+       [](const Frame& f, std::size_t i) { return degrees(f.phi_stdev[i]); }}};
   return scales[static_cast<int>(colour)];
 }
 

@@ -63,7 +63,7 @@ inline constexpr const char* ground = "#E9E3D6";  ///< what lies beneath the bed
 std::string palette_command(const Palette& palette);
 
 /// What the particles are coloured by.
-enum class Colour { speed, friction_angle, displacement, pressure };
+enum class Colour { speed, friction_angle, displacement, pressure, friction_stdev };
 
 /// How a quantity is shown.
 struct ColourScale {

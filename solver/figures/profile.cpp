@@ -77,13 +77,29 @@ std::string front_element(const Drawing& d, const Frame& frame, const std::strin
   return line("front" + tag, vermillion, 1.2, true);
 }
 
+// White dots with a dark ring, and their texts, which stay in the panel.
+std::string mark_element(const Drawing& d, const std::vector<Mark>& marks, const std::string& tag) {
+  std::vector<Vec2> points;
+  for (const Mark& mark : marks) {
+    points.push_back(mark.at);
+    const bool left = mark.at.x > d.view.lo.x + 0.8 * d.view.width();
+    d.sheet.script("set label ", literal(mark.text), " at ", mark.at.x, ",", mark.at.y, left ? " right" : " left",
+                   " offset ", left ? -0.8 : 0.8, ",0 front boxed font 'sans-serif:Bold,9' textcolor rgb '", ink, "'");
+  }
+  d.sheet.script("set style textbox opaque noborder fillcolor rgb 'white' margins 0.4,0.4");
+  d.sheet.script.data("marks" + tag, points);
+  return "$marks" + tag + " with points pointtype 7 pointsize 1.1 linecolor rgb '" + ink + "', $marks" + tag +
+         " with points pointtype 7 pointsize 0.6 linecolor rgb 'white'";
+}
+
 void colour_axis(Script& script, Colour colour, ColourRange range) {
   script(palette_command(*scale_of(colour).palette));
   script("set cbrange [", range.lo, ":", range.hi, "]");
   script("set cbtics ", nice_step(range.hi - range.lo, 4));
 }
 
-void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRange range, bool mark_front) {
+void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRange range,
+                const ProfileOptions& options) {
   const Panel& panel = d.layout.panels[k];
   const std::string tag = std::to_string(k);
   d.sheet.place(panel);
@@ -103,7 +119,8 @@ void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRan
     bytes = std::move(soil.bytes);
   }
   elements.insert(elements.end(), bed.front.begin(), bed.front.end());
-  if (mark_front && shot.frame->n_soil > 0) elements.push_back(front_element(d, *shot.frame, tag));
+  if (!options.marks.empty()) elements.push_back(mark_element(d, options.marks, tag));
+  if (options.mark_front && shot.frame->n_soil > 0) elements.push_back(front_element(d, *shot.frame, tag));
   d.sheet.script.plot(elements, bytes);
   d.sheet.script("unset label");
   d.sheet.script("unset colorbox");
@@ -202,7 +219,7 @@ Sheet profile_sheet(std::span<const Snapshot> snapshots, const Terrain& terrain,
     const double top = mixed ? layout.panels[k].top - 34 : 14;
     if (mixed || k == 0) sheet.colour_bar({bar_right - bar, bar_right, top, top + 10}, scale_of(colour).name);
     colour_axis(sheet.script, colour, range);
-    panel_plot(drawing, k, snapshots[k], range, options.mark_front);
+    panel_plot(drawing, k, snapshots[k], range, options);
   }
   return sheet;
 }

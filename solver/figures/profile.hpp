@@ -21,9 +21,16 @@ struct Snapshot {
   std::string caption;  ///< "t = 2.25 s" if empty
 };
 
+/// A point with a text beside it, such as a measured value.
+struct Mark {
+  Vec2 at;  ///< [m]
+  std::string text;
+};
+
 struct ProfileOptions {
   bool mark_front = true;              ///< a dashed line and the run-out at the farthest particle
   std::optional<ColourRange> range{};  ///< for all snapshots; unset: from the snapshots of the same colour
+  std::vector<Mark> marks{};           ///< in every panel
   std::optional<Box> view{};           ///< what is shown [m]; unset: the soil of all snapshots and some terrain ahead
 };
 

@@ -49,6 +49,33 @@ double thickness_above(std::span<const Vec2> outline, Vec2 point) {
   return length;
 }
 
+double depth_below_surface(std::span<const SlidePart> slide, Vec2 point) {
+  double depth = 0.0;
+  for (const SlidePart& part : slide)
+    if (const std::vector<double> y = crossings(part.outline, point.x); !y.empty())
+      depth = std::max(depth, y.back() - point.y);
+  return depth;
+}
+
+double greatest_depth(std::span<const SlidePart> slide) {
+  double greatest = 0.0;
+  for (const SlidePart& from : slide)
+    for (const Vec2 v : from.outline)  // between vertices the depth is linear
+      for (const SlidePart& part : slide)
+        if (const std::vector<double> y = crossings(part.outline, v.x); !y.empty())
+          greatest = std::max(greatest, depth_below_surface(slide, {v.x, y.front()}));
+  return greatest;
+}
+
+int material_at(std::span<const SlidePart> slide, Vec2 point) {
+  for (const SlidePart& part : slide) {
+    const std::vector<double> y = crossings(part.outline, point.x);
+    for (std::size_t k = 0; k + 1 < y.size(); k += 2)
+      if (y[k] <= point.y && point.y <= y[k + 1]) return part.material;
+  }
+  return 0;
+}
+
 double mass_above(std::span<const SlidePart> slide, std::span<const Material> materials, Vec2 point) {
   double mass = 0.0;
   for (const SlidePart& part : slide)

@@ -25,6 +25,15 @@ Box bounding_box(std::span<const SlidePart> slide);
 /// Thickness of the soil above `point`: the length of the vertical line that lies inside the outline [m].
 double thickness_above(std::span<const Vec2> outline, Vec2 point);
 
+/// Depth of a point below the highest outline above or below it [m], >= 0; 0 beside the outlines.
+double depth_below_surface(std::span<const SlidePart> slide, Vec2 point);
+
+/// The greatest depth of a point of the outlines [m].
+double greatest_depth(std::span<const SlidePart> slide);
+
+/// The material of the first outline that a point lies in, or 0.
+int material_at(std::span<const SlidePart> slide, Vec2 point);
+
 /// Mass of soil above a point per area of ground, sum of rho0 * thickness [kg/m2].
 double mass_above(std::span<const SlidePart> slide, std::span<const Material> materials, Vec2 point);
 

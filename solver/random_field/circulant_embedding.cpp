@@ -4,28 +4,12 @@
 #include <cmath>
 #include <complex>
 #include <numeric>
-#include <sstream>
 #include <unsupported/Eigen/FFT>
-
-#include "support/error.hpp"
 
 namespace talus {
 namespace {
 
-// Parts of a spacing that count as rounding: a point halfway between two nodes, to this tolerance, takes the upper one.
-constexpr double rounding = 1e-6;
-
 using Spectrum = std::vector<std::complex<double>>;
-
-/// The smallest 4 * 2^a 3^b 5^c that is at least n: a length that the FFT is fast at.
-std::size_t fast_length(std::size_t n) {
-  for (std::size_t m = (n + 3) / 4;; ++m) {
-    std::size_t rest = std::max<std::size_t>(m, 1);
-    for (std::size_t prime : {2, 3, 5})
-      while (rest % prime == 0) rest /= prime;
-    if (rest == 1) return 4 * std::max<std::size_t>(m, 1);
-  }
-}
 
 /// Eigenvalues of the circulant matrix whose first row is C at lags 0, 1, .., period/2, .., 1 times the spacing.
 std::vector<double> eigenvalues(const ExponentialCovariance& covariance, double spacing, std::size_t period) {
@@ -38,36 +22,11 @@ std::vector<double> eigenvalues(const ExponentialCovariance& covariance, double 
   return eigen;
 }
 
-double spacing_along(const FieldSpec& spec, double ell) { return spec.grid_spacing.value_or(grid_fraction * ell); }
-
-double whole_intervals(double length, double spacing) { return std::max(1.0, std::ceil(length / spacing - rounding)); }
-
-/// The spacing u^-1 from which on (x u + 1) (y u + 1) nodes are at most n, for a domain of x by y.
-double spacing_that_fits(double x, double y, double n) {
-  const double b = x + y;
-  return (b + std::sqrt(b * b + 4 * x * y * (n - 1))) / (2 * (n - 1));
-}
-
-/// Refuses a domain that takes too many coefficients: twice as many as intervals along each axis.
-void check_size(const FieldSpec& spec, Box domain) {
-  const double x = spec.along_x() ? domain.width() : 0.0, y = spec.along_y() ? domain.height() : 0.0;
-  const double along_x = spec.along_x() ? 2 * whole_intervals(x, spacing_along(spec, spec.ell_x)) : 1.0;
-  const double along_y = spec.along_y() ? 2 * whole_intervals(y, spacing_along(spec, spec.ell_y)) : 1.0;
-  if (along_x * along_y <= max_grid) return;
-  const double fits = spacing_that_fits(x, y, max_grid / (spec.direction == FieldDirection::xy ? 4 : 2));
-  std::ostringstream text;
-  text.precision(2);
-  text << (spec.grid_spacing ? "" : "is missing, and the default, a tenth of the correlation length, ") << "makes "
-       << along_x * along_y << " coefficients, more than " << max_grid << "; a spacing from " << 1.05 * fits
-       << " m on fits";
-  throw ConfigError("/random_field/grid_spacing_m", text.str());
-}
-
 CirculantAxis axis(const FieldSpec& spec, Box domain, double dx, bool horizontal) {
   if (!(horizontal ? spec.along_x() : spec.along_y())) return CirculantAxis::constant();
-  check_size(spec, domain);
+  check_grid_size(spec, domain);
   const ExponentialCovariance covariance{horizontal ? spec.ell_x : spec.ell_y, spec.cell_average ? dx : 0.0};
-  const double spacing = spacing_along(spec, covariance.ell);
+  const double spacing = grid_spacing(spec, covariance.ell);
   return horizontal ? CirculantAxis(domain.lo.x, domain.hi.x, spacing, covariance)
                     : CirculantAxis(domain.lo.y, domain.hi.y, spacing, covariance);
 }
@@ -91,11 +50,10 @@ double ExponentialCovariance::operator()(double d) const {
 
 // The exponential covariance is convex, so the smallest embedding is nonnegative definite (Dietrich & Newsam 1997).
 CirculantAxis::CirculantAxis(double lo, double hi, double spacing, const ExponentialCovariance& covariance)
-    : lo_(lo), spacing_(spacing), cell_(covariance.cell), variance_(covariance(0)) {
+    : axis_(lo, hi, spacing), cell_(covariance.cell), variance_(covariance(0)) {
   const ExponentialCovariance of_nodes{covariance.ell};
   correlation_ = of_nodes(spacing);
-  nodes_ = static_cast<std::size_t>(whole_intervals(hi - lo, spacing)) + 1;
-  root_ = eigenvalues(of_nodes, spacing, fast_length(2 * (nodes_ - 1)));
+  root_ = eigenvalues(of_nodes, spacing, fast_length(2 * (nodes() - 1)));
   for (double& value : root_) value = std::sqrt(std::max(value, 0.0));
 }
 
@@ -110,11 +68,6 @@ void CirculantAxis::filter(std::span<double> row) const {
   fft.inv(row.data(), spectrum.data(), n);
 }
 
-std::size_t CirculantAxis::nearest_node(double x) const {
-  const double position = std::floor((x - lo_) / spacing_ + 0.5 + rounding);
-  return static_cast<std::size_t>(std::clamp(position, 0.0, static_cast<double>(nodes_ - 1)));
-}
-
 /// sum_ij w_i w_j r^|i-j|, with r the correlation of neighbours.
 double CirculantAxis::variance_of(const Stencil& stencil) const {
   double sum = 0, left = 0;  // left: sum over j < i of w_j r^(i-j)
@@ -125,18 +78,9 @@ double CirculantAxis::variance_of(const Stencil& stencil) const {
   return sum;
 }
 
-CirculantAxis::Stencil CirculantAxis::stencil(double x) const {
-  if (nodes_ == 1) return {};
-  if (cell_ == 0) return {nearest_node(x), {1.0}};
-  const double lo = x - cell_ / 2, hi = x + cell_ / 2;
-  const std::size_t first = nearest_node(lo), last = nearest_node(hi);
-  Stencil stencil{first, std::vector<double>(last - first + 1)};
-  double from = lo;
-  for (std::size_t k = first; k <= last; ++k) {
-    const double to = k == last ? hi : lo_ + (static_cast<double>(k) + 0.5) * spacing_;
-    stencil.weights[k - first] = (to - from) / cell_;
-    from = to;
-  }
+Stencil CirculantAxis::stencil(double x) const {
+  Stencil stencil = axis_.stencil(x, cell_);
+  if (nodes() == 1 || cell_ == 0) return stencil;
   const double scale = std::sqrt(variance_ / variance_of(stencil));
   for (double& w : stencil.weights) w *= scale;
   return stencil;

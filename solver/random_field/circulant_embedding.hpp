@@ -10,14 +10,10 @@
 #include <vector>
 
 #include "math/vec2.hpp"
+#include "random_field/field_grid.hpp"
 #include "random_field/field_spec.hpp"
 
 namespace talus {
-
-/// More coefficients than this are refused (160 MB of them), before each axis is lengthened for the FFT.
-inline constexpr double max_grid = 2e7;
-/// Default distance of nodes along an axis, as a fraction of the correlation length along it.
-inline constexpr double grid_fraction = 0.1;
 
 /// Covariance of a field along one axis; that of two axes is the product of two of these.
 /// C(d) = exp(-|d| / ell), or the covariance of that field's moving average over `cell`:
@@ -41,18 +37,13 @@ class CirculantAxis {
   /// The axis along which the field does not vary: one node, variance 1.
   static CirculantAxis constant() { return {}; }
 
-  std::size_t nodes() const { return nodes_; }
+  std::size_t nodes() const { return axis_.nodes(); }
   std::size_t period() const { return root_.size(); }  ///< nodes of the periodic field
   double variance() const { return variance_; }        ///< of the values that stencil() weights [-]
 
   /// What one row of white noise (period() numbers) becomes: period() values with the covariance of the axis.
   void filter(std::span<double> row) const;
 
-  /// Weights of consecutive nodes.
-  struct Stencil {
-    std::size_t first = 0;
-    std::vector<double> weights = {1.0};
-  };
   /// The mean over the cell around `x`, or the nearest node without a cell; beyond the ends the value of the last node
   /// holds.
   /// @param x  coordinate [m]
@@ -60,15 +51,12 @@ class CirculantAxis {
 
  private:
   CirculantAxis() = default;
-  std::size_t nearest_node(double x) const;
   double variance_of(const Stencil& stencil) const;
 
-  double lo_ = 0.0;
-  double spacing_ = 1.0;
-  double cell_ = 0.0;         ///< length that values are averaged over [m]; 0: values at points
-  double variance_ = 1.0;     ///< exact variance of such values [-]
-  double correlation_ = 1.0;  ///< of neighbouring nodes [-]
-  std::size_t nodes_ = 1;
+  GridAxis axis_;
+  double cell_ = 0.0;                 ///< length that values are averaged over [m]; 0: values at points
+  double variance_ = 1.0;             ///< exact variance of such values [-]
+  double correlation_ = 1.0;          ///< of neighbouring nodes [-]
   std::vector<double> root_ = {1.0};  ///< square roots of the eigenvalues
 };
 

@@ -126,6 +126,14 @@ std::vector<double> KarhunenLoeve::gaussian(std::span<const Vec2> points, std::s
   return expand(points, itself, c);
 }
 
+std::vector<double> KarhunenLoeve::modes_at(Vec2 point) const {
+  std::vector<double> values;
+  for (std::size_t k = 0; k < pairs_.size(); ++k)
+    values.push_back(scale_[k] * x_.solved(pairs_[k].ix).value(point.x - x_.centre()) *
+                     y_.solved(pairs_[k].iy).value(point.y - y_.centre()));
+  return values;
+}
+
 std::vector<double> KarhunenLoeve::variance(std::span<const Vec2> points) const {
   std::vector<double> c(scale_);
   for (double& scale : c) scale *= scale;

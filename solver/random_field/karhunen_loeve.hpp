@@ -34,6 +34,9 @@ class KarhunenLoeve {
   /// Z at points, shape of `points` [-]. The value at a point depends on that point and xi alone, bit by bit.
   std::vector<double> gaussian(std::span<const Vec2> points, std::span<const double> xi) const;
 
+  /// What each coefficient makes of Z at one point: scale_k f_k(x), for every k.
+  std::vector<double> modes_at(Vec2 point) const;
+
  private:
   /// The y modes that go with one x mode: `count` consecutive ones from `first` on, their coefficients from `offset`
   /// on.

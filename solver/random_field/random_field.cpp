@@ -12,27 +12,115 @@
 namespace talus {
 namespace {
 
-using Sampler = std::variant<KarhunenLoeve, CirculantEmbedding>;
-
-Sampler make_sampler(const FieldSpec& spec, Box slide_box, double dx) {
-  const Box domain = spec.domain.value_or(slide_box);
+Box checked(const FieldSpec& spec, Box domain) {
   if (spec.along_x() && !(domain.width() > 0)) throw ConfigError("/random_field/domain_m", "has no extent along x");
   if (spec.along_y() && !(domain.height() > 0)) throw ConfigError("/random_field/domain_m", "has no extent along y");
-  if (spec.sampler == FieldSampler::karhunen_loeve) return KarhunenLoeve(spec, domain, dx);
-  return CirculantEmbedding(spec, domain, dx);
+  return domain;
+}
+
+FieldSpec without_averaging(FieldSpec spec) {
+  spec.cell_average = false;
+  return spec;
 }
 
 }  // namespace
 
+RandomField::Sampler RandomField::make_sampler(const FieldSpec& spec, Box domain, double dx) {
+  const bool closed_form = spec.covariance == Covariance::exponential;
+  if (spec.sampler == FieldSampler::karhunen_loeve) {
+    if (closed_form) return KarhunenLoeve(spec, domain, dx);
+    return GridExpansion(spec, domain, dx);
+  }
+  if (closed_form) return CirculantEmbedding(spec, domain, dx);
+  return PlanarEmbedding(spec, domain, dx);
+}
+
 RandomField::RandomField(const FieldSpec& spec, Box slide_box, double dx)
-    : sampler_(make_sampler(spec, slide_box, dx)), given_(spec.xi) {
-  if (given_.empty() || given_.size() == terms()) return;
-  throw ConfigError("/random_field/xi", "has " + std::to_string(given_.size()) + " coefficients, the field takes " +
-                                            std::to_string(terms()));
+    : correlation_(spec),
+      bedding_(spec.dip),
+      nugget_(spec.nugget),
+      cell_(spec.cell_average ? dx : 0.0),
+      sampler_(make_sampler(spec, bedding_.around(checked(spec, spec.domain.value_or(slide_box))), dx)),
+      spec_(spec),
+      domain_(bedding_.around(spec.domain.value_or(slide_box))) {
+  if (cell_ > 0) {
+    const auto* expansion = std::get_if<GridExpansion>(&sampler_);
+    at_points_.emplace(expansion ? Sampler(expansion->at_points())
+                                 : make_sampler(without_averaging(spec_), domain_, 0.0));
+  }
+  if (spec.data.empty()) check_given(terms());
+}
+
+void RandomField::check_given(std::size_t needed) const {
+  if (spec_.xi.empty() || spec_.xi.size() == needed) return;
+  throw ConfigError("/random_field/xi", "has " + std::to_string(spec_.xi.size()) + " coefficients, the field takes " +
+                                            std::to_string(needed));
+}
+
+void RandomField::condition(std::span<const GaussianDatum> data) {
+  if (data.empty()) return;
+  std::vector<GaussianDatum> turned = merged(data);
+  for (GaussianDatum& datum : turned) datum.x = bedding_.turned(datum.x);
+  conditioning_.emplace(correlation_, nugget_, std::move(turned));
+  check_given(terms());
+}
+
+double RandomField::embedding_error() const {
+  const auto* planar = std::get_if<PlanarEmbedding>(&sampler_);
+  return planar == nullptr ? 0.0 : planar->error();
+}
+
+std::vector<double> RandomField::variance(std::span<const Vec2> points) const {
+  const std::vector<Vec2> turned = bedding_.turned(points);
+  std::vector<double> v = std::visit([&](const auto& s) { return s.variance(turned); }, sampler_);
+  for (double& value : v) value = with_nugget(value);
+  return v;
+}
+
+std::vector<double> RandomField::averaging_loss(std::span<const Vec2> points) const {
+  std::vector<double> loss(points.size(), 0.0);
+  if (!at_points_) return loss;
+  const std::vector<Vec2> turned = bedding_.turned(points);
+  const auto variance_of = [&](const Sampler& sampler) {
+    return std::visit([&](const auto& s) { return s.variance(turned); }, sampler);
+  };
+  const std::vector<double> averaged = variance_of(sampler_), at = variance_of(*at_points_);
+  for (std::size_t i = 0; i < loss.size(); ++i) loss[i] = (1 - nugget_) * (at[i] - averaged[i]);
+  return loss;
+}
+
+std::vector<double> RandomField::conditional_variance(std::span<const Vec2> points) const {
+  std::vector<double> v = variance(points);
+  if (!conditioning_) return v;
+  const std::vector<Vec2> turned = bedding_.turned(points);
+  const auto n = static_cast<Eigen::Index>(data());
+  const auto count = static_cast<Eigen::Index>(points.size());
+  Eigen::MatrixXd of_data = conditioning_->data_covariance(), with_data(n, count);
+  const auto expansion = [&]<class S>(const S& sampler) {
+    if constexpr (requires { sampler.modes_at(Vec2{}); }) {  // what is drawn has the covariances of the modes kept
+      Eigen::MatrixXd modes(static_cast<Eigen::Index>(sampler.terms()), n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const std::vector<double> at =
+            std::get<S>(at_points()).modes_at(conditioning_->points()[static_cast<std::size_t>(i)]);
+        modes.col(i) = Eigen::Map<const Eigen::VectorXd>(at.data(), static_cast<Eigen::Index>(at.size()));
+        const std::vector<double> covariance = sampler.gaussian(turned, at);
+        with_data.row(i) = (1 - nugget_) * Eigen::Map<const Eigen::RowVectorXd>(covariance.data(), count);
+      }
+      of_data = (1 - nugget_) * modes.transpose() * modes;
+    } else {
+      for (Eigen::Index k = 0; k < count; ++k)
+        with_data.col(k) = conditioning_->covariances(turned[static_cast<std::size_t>(k)], cell_);
+    }
+  };
+  std::visit(expansion, sampler_);
+  for (std::size_t k = 0; k < v.size(); ++k)
+    v[k] = nugget_ + std::max(0.0, conditioning_->variance(turned[k], cell_, v[k] - nugget_,
+                                                           with_data.col(static_cast<Eigen::Index>(k)), of_data));
+  return v;
 }
 
 std::vector<double> RandomField::draw(std::uint64_t seed, std::uint64_t realization) const {
-  if (!given_.empty()) return given_;
+  if (!spec_.xi.empty()) return spec_.xi;
   std::vector<double> xi(terms());
   for (std::size_t k = 0; k < xi.size(); ++k) xi[k] = standard_normal(seed, realization, static_cast<std::uint32_t>(k));
   return xi;
@@ -41,15 +129,32 @@ std::vector<double> RandomField::draw(std::uint64_t seed, std::uint64_t realizat
 std::vector<double> RandomField::draw_stratified(std::uint64_t seed, std::uint64_t realizations,
                                                  std::uint64_t realization, std::size_t modes) const {
   std::vector<double> xi = draw(seed, realization);
-  if (!given_.empty()) return xi;
+  if (!spec_.xi.empty()) return xi;
   const auto leading = stratified_normals(seed, realizations, realization, std::min(modes, xi.size()));
   std::copy(leading.begin(), leading.end(), xi.begin());
   return xi;
 }
 
+std::vector<double> RandomField::continuous(const Sampler& sampler, std::span<const Vec2> turned,
+                                            std::span<const double> xi) const {
+  std::vector<double> y = std::visit([&](const auto& s) { return s.gaussian(turned, xi.first(s.terms())); }, sampler);
+  if (nugget_ > 0)
+    for (double& value : y) value *= std::sqrt(1 - nugget_);
+  return y;
+}
+
 std::vector<double> RandomField::gaussian(std::span<const Vec2> points, std::span<const double> xi) const {
   if (xi.size() != terms()) throw std::invalid_argument("RandomField::gaussian: xi does not have terms() entries");
-  return std::visit([&](const auto& sampler) { return sampler.gaussian(points, xi); }, sampler_);
+  const std::vector<Vec2> turned = bedding_.turned(points);
+  std::vector<double> z = continuous(sampler_, turned, xi);
+  if (conditioning_) {
+    const std::vector<double> y = continuous(at_points(), conditioning_->points(), xi);
+    const Eigen::VectorXd a = conditioning_->coefficients(y, xi.subspan(modes(), data()));
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] += conditioning_->correction(turned[i], cell_, a);
+  }
+  if (nugget_ > 0)
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] += std::sqrt(nugget_) * white_noise(xi.back(), points[i]);
+  return z;
 }
 
 double log_stdev(double cov) { return std::sqrt(std::log1p(cov * cov)); }
@@ -63,6 +168,10 @@ std::vector<double> log_medians(double mean, double sigma, std::span<const doubl
   mu.reserve(variance.size());
   for (double v : variance) mu.push_back(std::log(mean) - sigma * sigma * v / 2);
   return mu;
+}
+
+double log_trend(double tan_phi, double slope, double depth) {
+  return std::log(std::tan(std::atan(tan_phi) + slope * depth) / tan_phi);
 }
 
 std::vector<double> lognormal(std::span<const double> gaussian, std::span<const double> mu, double sigma) {

@@ -3,6 +3,7 @@
 #include <Random123/philox.h>
 
 #include <algorithm>
+#include <bit>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <cstdint>
@@ -22,6 +23,14 @@ double unit(std::uint32_t lo, std::uint32_t hi) {
   const std::uint64_t word = (static_cast<std::uint64_t>(hi) << 32) | lo;
   return (static_cast<double>(word >> 12) + 0.5) * 0x1p-52;
 }
+
+/// A standard normal number from two uniform ones (Box & Muller 1958).
+double normal(const std::array<double, 2>& uniform) {
+  return std::sqrt(-2 * std::log(uniform[0])) * std::cos(2 * std::numbers::pi * uniform[1]);
+}
+
+/// A coordinate in whole micrometres.
+std::uint64_t micrometres(double x) { return static_cast<std::uint64_t>(std::llround(x * 1e6)); }
 
 /// Place of `realization` in a random permutation of 0 .. realizations-1 (Fisher & Yates), one permutation per mode.
 std::uint64_t stratum(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization, std::uint32_t mode) {
@@ -44,8 +53,12 @@ std::array<double, 2> uniforms(std::uint64_t seed, std::uint64_t index, std::uin
 }
 
 double standard_normal(std::uint64_t seed, std::uint64_t realization, std::uint32_t mode) {
-  const auto [u, v] = uniforms(seed, realization, mode, Stream::field);
-  return std::sqrt(-2 * std::log(u)) * std::cos(2 * std::numbers::pi * v);
+  return normal(uniforms(seed, realization, mode, Stream::field));
+}
+
+double white_noise(double key, Vec2 x) {
+  if (key == 0) return 0;
+  return normal(uniforms(std::bit_cast<std::uint64_t>(key), micrometres(x.x), low(micrometres(x.y)), Stream::nugget));
 }
 
 std::vector<double> stratified_normals(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization,

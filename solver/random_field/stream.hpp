@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "math/vec2.hpp"
+
 namespace talus {
 
 /// What a draw is for; draws of different streams are independent.
-enum class Stream : std::uint32_t { field = 0, strata = 1, jitter = 2 };
+enum class Stream : std::uint32_t { field = 0, strata = 1, jitter = 2, nugget = 3, subspace = 4 };
 
 /// Two independent uniform numbers in the open interval (0, 1), of 52 bits each.
 /// @param index  realization, or place in a permutation
@@ -19,6 +21,12 @@ std::array<double, 2> uniforms(std::uint64_t seed, std::uint64_t index, std::uin
 
 /// The standard normal coefficient of a mode of a realization (Box & Muller 1958).
 double standard_normal(std::uint64_t seed, std::uint64_t realization, std::uint32_t mode);
+
+/// White noise of the plane: an independent standard normal value at each point, to the micrometre, and all 0 for the
+/// key 0.
+/// @param key  a number that selects the noise, such as a standard normal coefficient
+/// @param x    a point [m]
+double white_noise(double key, Vec2 x);
 
 /// Latin hypercube sample of the `modes` leading coefficients (McKay, Beckman & Conover 1979): over the realizations
 /// 0 .. realizations-1, each coefficient falls once in each of as many intervals of equal probability. Modes are paired

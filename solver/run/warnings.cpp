@@ -13,6 +13,7 @@ namespace talus {
 namespace {
 
 constexpr double little_variance = 0.5;  ///< captured share of the variance that is warned of [-]
+constexpr double inexact = 1e-6;         ///< error of a covariance that is warned of [-]
 
 /// The key of the case that a check concerns.
 std::string pointer_of(std::string_view check) {
@@ -48,13 +49,20 @@ std::vector<Fault> warnings_before_run(const Case& c, const ParticlePlan& plan, 
         100.0 * field.captured_variance, static_cast<long long>(field.terms));
     warnings.push_back({"/random_field", text});
   }
+  if (field.embedding_error > inexact) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "is not exact: the grid is too large to be extended, and correlations are off by up to %.2g",
+                  field.embedding_error);
+    warnings.push_back({"/random_field/sampler", text});
+  }
   return warnings;
 }
 
 std::vector<Fault> warnings_before_run(const Case& c) {
   FieldSummary summary;
   if (c.field) {
-    const RandomField field(*c.field, bounding_box(c.model.slide), c.model.dx);
+    const RandomField field = make_field(c.model, *c.field);
     summary = field_summary(*c.field, field);
   }
   return warnings_before_run(c, plan_particles(c.model), summary);

@@ -23,6 +23,7 @@ struct Frame {
   std::vector<double> pressure;               ///< [Pa], positive in compression
   std::vector<double> tan_phi;                ///< tangent of the friction angle [-]; 0 for walls
   std::vector<double> shear_rate;             ///< gamma_dot [1/s]
+  std::vector<double> phi_stdev;              ///< of the friction angle over realizations [rad]; empty in a run
   std::vector<std::array<double, 4>> stress;  ///< sigma xx, yy, zz, xy [Pa], positive in tension
 };
 

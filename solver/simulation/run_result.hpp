@@ -18,6 +18,7 @@ struct FieldSummary {
   double cov = 0.0;                ///< coefficient of variation of tan(phi) that is drawn, from the mean variance [-]
   double mean_phi = 0.0;           ///< mean over the soil particles of the friction angle [rad]
   std::int64_t terms = 0;          ///< coefficients used
+  double embedding_error = 0.0;    ///< bound of the error of any covariance that circulant embedding makes [-]
 };
 
 /// What the particles carry of the soil of a case, per metre of width.

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "covariance_sample.hpp"
 #include "random_field/random_field.hpp"
 #include "random_field/stream.hpp"
 
@@ -17,32 +18,13 @@ namespace talus {
 namespace {
 
 constexpr Box slide{{0.0, 2.0}, {6.0, 5.0}};
-constexpr double z_bound = 5;     // 6e-7 a comparison
+using test::z_bound;
 constexpr double p_bound = 1e-5;  // of chi-square tests, either tail
 
-/// Sample covariances of 20,000 realizations at points, each within z stdev/sqrt(n) of `expected`; for Gaussian
-/// variables of known mean 0 the variance of a product is C_ii C_jj + C_ij^2.
 void expect_covariance(const RandomField& field, const std::vector<Vec2>& points,
                        const std::function<double(Vec2, Vec2)>& expected) {
-  constexpr int n = 20'000;
-  const std::size_t m = points.size();
-  std::vector<double> sum(m * m), mean(m);
-  for (int k = 0; k < n; ++k) {
-    const auto z = field.gaussian(points, field.draw(2024, static_cast<std::uint64_t>(k)));
-    for (std::size_t i = 0; i < m; ++i) {
-      mean[i] += z[i] / n;
-      for (std::size_t j = 0; j <= i; ++j) sum[i * m + j] += z[i] * z[j] / n;
-    }
-  }
-  for (std::size_t i = 0; i < m; ++i) {
-    const double variance = expected(points[i], points[i]);
-    EXPECT_NEAR(mean[i], 0, z_bound * std::sqrt(variance / n));
-    for (std::size_t j = 0; j <= i; ++j) {
-      const double c = expected(points[i], points[j]);
-      const double stdev = std::sqrt(variance * expected(points[j], points[j]) + c * c);
-      EXPECT_NEAR(sum[i * m + j], c, z_bound * stdev / std::sqrt(n)) << i << ' ' << j;
-    }
-  }
+  test::expect_moments(field, points, std::vector<double>(points.size()),
+                       [&](std::size_t i, std::size_t j) { return expected(points[i], points[j]); });
 }
 
 const std::vector<Vec2> points{{0.5, 2.5}, {0.75, 2.5},  {0.5, 2.75}, {1.0, 3.0}, {3.0, 3.5}, {3.25, 3.25},

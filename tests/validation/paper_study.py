@@ -44,7 +44,7 @@ def settings(case, truncation, spacing=SPACING):
     stdev, length = TABLE_4[case]
     floor = {"study.noise_floor_replicates": 0} if spacing == FINE else {}  # noise_floor.py has it
     return {**floor, "particle_placement": "whole_cells", "particle_spacing_m": spacing, "random_field.log_stdev": stdev, "random_field.correlation_length_m": length,
-            "time.end_s": 15, "time.stop_at_rest": True, **TRUNCATIONS[truncation]}
+            "random_field.cell_average": False, "time.end_s": 15, "time.stop_at_rest": True, **TRUNCATIONS[truncation]}
 
 
 def name(case, truncation):

@@ -1,0 +1,32 @@
+#pragma once
+// The measured values that a random field is conditioned on.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "case/reader.hpp"
+#include "random_field/field_spec.hpp"
+
+namespace talus {
+
+/// Most data of one field: the kriging system of 1,000 takes a second.
+inline constexpr std::size_t most_data = 1'000;
+
+/// Data, and where each is written.
+struct FieldData {
+  std::vector<FieldDatum> values;
+  std::vector<std::string> places = {};  ///< JSON pointer, or file and line
+  Json rows = Json::array();             ///< [[x, y, value, error], ...] as written
+  std::string form = {};                 ///< CSV only: the file, and columns, separator and decimals as they were read
+};
+
+/// Declares and reads `data` or `data_csv`, whichever is there: friction angles in degrees. Records them as `data`.
+/// @param directory  where CSV files lie
+/// @return no data when there was a fault, or neither key
+FieldData read_field_data(ObjectReader& in, const std::filesystem::path& directory);
+
+/// Data lie in the rectangle of the field, and those at one point agree: within 5 joint standard errors.
+void check_field_data(const FieldData& data, Box domain, Faults& faults);
+
+}  // namespace talus
