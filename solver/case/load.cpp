@@ -60,6 +60,9 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
   m.slide = std::move(slide.parts);
   m.materials = std::move(slide.materials);
   origins.outlines = std::move(slide.origins);
+  in.object("water",
+            "Ground water before the slide, for materials that state no r_u. Without this section they are dry.",
+            Absent::skip, [&](ObjectReader& section) { read_water(section, m.water, directory, origins); });
   in.object("rheology", "How the soil yields.", Absent::defaults,
             [&](ObjectReader& section) { read_rheology(section, m.rheology); });
   const Json* time = in.find("time");
@@ -108,6 +111,8 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   if (shaped &&
       free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/max_particles", "/walls", "/particle_placement"}))
     check_geometry(out.value.model, origins, faults);
+  if (shaped && free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/water"}))
+    check_water(out.value.model, origins, faults);
   if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
   if (faults.empty()) {
     check_steps(out.value.model, faults);

@@ -14,6 +14,7 @@ namespace talus {
 struct SourceLocations {
   Vertices bed;
   std::vector<Vertices> outlines;  ///< of each slide part
+  Vertices water;                  ///< of the phreatic line
   std::vector<std::string> files;  ///< CSV files with the form in which they were read
 
   void note_file(const Vertices& v) {
@@ -33,8 +34,20 @@ void read_lattice(ObjectReader& in, Model& m);
 /// A material and its friction angles as written, so that a layer which inherits an angle repeats it exactly.
 struct MaterialInput : Material {
   double friction_angle_deg = 0.0;
+  double gradient_kPa_m = 0.0;                 ///< of the undrained strength
   double high_rate_friction_angle_deg = 90.0;  ///< of mu_i
 };
+
+inline constexpr Quantity friction_angle_range{"deg", 0.0, 89.0};  // tan(89 deg) is 57, and grows without bound beyond
+
+// read_strength.cpp
+/// Friction angle and cohesion, or an undrained strength; r_u. A layer that states one kind of strength drops what it
+/// would have inherited of the other.
+void read_strength(ObjectReader& in, MaterialInput& m);
+/// Residual strength and how far the soil must shear until it is reached. @param m  its strength is read already
+void read_softening(ObjectReader& in, MaterialInput& m);
+/// The phreatic line.
+void read_water(ObjectReader& in, Water& w, const std::filesystem::path& directory, SourceLocations& origins);
 
 // read_physics.cpp
 void read_material(ObjectReader& in, MaterialInput& m);
@@ -74,6 +87,12 @@ void use_local_coordinates(Case& c);
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults);
 /// Enough wall layers, friction where a field needs it, given coefficients as many as the field takes.
 void check_choices(const Case& c, Faults& faults);
+
+// check_water.cpp
+/// A phreatic line that covers the slide and does not lie above the ground.
+void check_water(const Model& model, const SourceLocations& origins, Faults& faults);
+/// A phreatic line that no material feels.
+void warn_of_unused_water(const Model& model, std::vector<Fault>& warnings);
 
 // check_demand.cpp: numbers within their ranges that together ask for more than any run can do
 /// At most 1e9 time steps. @param model  without faults

@@ -14,6 +14,11 @@
 
 namespace talus {
 
+/// Rates of density [kg/m3/s] and of elastic deviatoric stress [Pa/s].
+struct ElasticRates {
+  double drho, dtxx, dtyy, dtxy;
+};
+
 /// Evaluates the right-hand side and integrates it over a step. A back end keeps the rates of its last evaluation,
 /// which the leapfrog needs for the next step; when particles are reordered the rates must follow.
 /// Not thread-safe: one simulation owns one flow. The loops inside run on OpenMP's threads, with the same bits for any
@@ -58,6 +63,13 @@ class Flow {
   virtual void read_evaluation(const Soil& soil, Soil& to) const = 0;
   /// Takes them over from the arrays of `from`.
   virtual void write_evaluation(Soil& soil, const Soil& from) = 0;
+
+  /// Of the last evaluation, of soil particle i.
+  virtual ElasticRates elastic_rates(const Soil& soil, std::size_t i) const = 0;
+  /// To be called when something else has changed cohesion or friction of the soil.
+  virtual void strength_changed(const Soil&) {}
+  /// To be called when something else has changed WallParticles::drag.
+  virtual void drag_changed(const WallParticles&) {}
 
   /// Wall clock spent in the passes so far.
   const StageTimes& times() const { return times_; }

@@ -61,6 +61,12 @@ void VectorisedFlow::write_evaluation(Soil&, const Soil& from) {
   });
 }
 
+ElasticRates VectorisedFlow::elastic_rates(const Soil&, std::size_t i) const {
+  const PackedSoil& s = flow_.soil;
+  const auto wide = [i](const std::vector<float>& array) { return static_cast<double>(array[i]); };
+  return {wide(s.drho), wide(s.dtxx), wide(s.dtyy), wide(s.dtxy)};
+}
+
 void VectorisedFlow::swap_rates(Soil& soil, std::size_t i, std::size_t j) {
   for_each_pair(soil, flow_.soil, [&](auto&, auto& packed, std::size_t stride, std::size_t offset) {
     std::swap(packed[stride * i + offset], packed[stride * j + offset]);

@@ -31,6 +31,9 @@ class VectorisedFlow final : public Flow {
   void swap_rates(Soil& soil, std::size_t i, std::size_t j) override;
   void read_evaluation(const Soil& soil, Soil& to) const override;
   void write_evaluation(Soil& soil, const Soil& from) override;
+  ElasticRates elastic_rates(const Soil& soil, std::size_t i) const override;
+  void strength_changed(const Soil& soil) override { pack_strength(flow_, soil); }
+  void drag_changed(const WallParticles& walls) override { pack_wall_cohesion(flow_, constants(), walls); }
 
   /// The operation of integrate/schemes.hpp, outside a step: rates of the soil, and stress of the walls, at the state
   /// that the present rates lead to after `ahead` [s].

@@ -49,6 +49,14 @@ double thickness_above(std::span<const Vec2> outline, Vec2 point) {
   return length;
 }
 
+std::optional<double> top_of(std::span<const SlidePart> slide, double x) {
+  std::optional<double> top;
+  for (const SlidePart& part : slide)
+    if (const std::vector<double> y = crossings(part.outline, x); !y.empty())
+      top = std::max(top.value_or(y.back()), y.back());
+  return top;
+}
+
 double mass_above(std::span<const SlidePart> slide, std::span<const Material> materials, Vec2 point) {
   double mass = 0.0;
   for (const SlidePart& part : slide)

@@ -2,6 +2,7 @@
 // From outlines to points: area, depth of burial, walls as lines, and the rows of particles that line them.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,9 @@ Box bounding_box(std::span<const SlidePart> slide);
 
 /// Thickness of the soil above `point`: the length of the vertical line that lies inside the outline [m].
 double thickness_above(std::span<const Vec2> outline, Vec2 point);
+
+/// Height of the highest soil at x, that of the ground surface before the slide [m]; unset: no outline has soil there.
+std::optional<double> top_of(std::span<const SlidePart> slide, double x);
 
 /// Mass of soil above a point per area of ground, sum of rho0 * thickness [kg/m2].
 double mass_above(std::span<const SlidePart> slide, std::span<const Material> materials, Vec2 point);

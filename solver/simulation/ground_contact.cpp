@@ -11,9 +11,10 @@ constexpr std::size_t group = 512;  ///< particles whose actions are summed up i
 }
 
 GroundContact::GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx, Vec2 g,
-                             std::size_t particles)
+                             std::size_t particles, std::vector<Boundary> boundaries)
     : ground_(std::move(lines)),
       friction_(std::move(friction)),
+      boundaries_(std::move(boundaries)),
       dx_(dx),
       g_(g),
       next_(particles, 0.0f),
@@ -70,7 +71,8 @@ GroundContact::Action GroundContact::act_on(Soil& soil, std::size_t i) {
     const Vec2 back = near.point + to * normal;
     soil.x[i] = back.x;
     soil.y[i] = back.y;
-    slow_down(soil, i, normal, friction_[near.line]);
+    slow_down(soil, i, normal,
+              friction_[boundaries_.empty() ? near.line : friction_index(boundaries_, near.line, back.x)]);
   }
   const Vec2 moved = soil.position(i) - start;
   return {norm(moved), soil.m[i] * (0.5 * (norm2(velocity) - norm2(soil.velocity(i))) + dot(g_, moved))};

@@ -26,11 +26,12 @@ class GroundContact {
   static constexpr double deepest = 0.5;
 
   /// @param lines     of the boundaries, at least one
-  /// @param friction  of each boundary
+  /// @param friction  as wall_friction() returns it
+  /// @param boundaries  whose stretches have frictions of their own; empty: none has
   /// @param dx        particle spacing [m]
   /// @param g         gravity [m/s2]
   GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx, Vec2 g,
-                std::size_t particles);
+                std::size_t particles, std::vector<Boundary> boundaries = {});
 
   /// To be called after every step.
   /// @param displacement  of the particle that moved the farthest since the last call [m]
@@ -57,6 +58,7 @@ class GroundContact {
 
   Ground ground_;
   std::vector<WallFriction> friction_;
+  std::vector<Boundary> boundaries_;
   double dx_;
   Vec2 g_;
   double travelled_ = 0.0;   ///< sum of the displacements so far [m]

@@ -23,7 +23,7 @@ Frame Simulation::frame() const {
   f.n_soil = soil_.size();
   const std::size_t n = soil_.size() + walls_.size();
   for (auto* array : {&f.position, &f.displacement, &f.velocity}) array->resize(n);
-  for (auto* array : {&f.density, &f.pressure, &f.tan_phi, &f.shear_rate}) array->resize(n);
+  for (auto* array : {&f.density, &f.pressure, &f.tan_phi, &f.cohesion, &f.shear_rate}) array->resize(n);
   f.stress.resize(n);
   Soil evaluated;
   flow_->read_evaluation(soil_, evaluated);
@@ -35,6 +35,7 @@ Frame Simulation::frame() const {
     f.density[k] = soil_.rho[i];
     f.pressure[k] = evaluated.p[i];
     f.tan_phi[k] = soil_.tan_phi[i];
+    f.cohesion[k] = soil_.c[i];
     f.shear_rate[k] = evaluated.gamma_dot[i];
     f.stress[k] = stress_components(evaluated.stress(i), evaluated.p[i]);
   }

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <string>
 
+#include "material/pore_pressure.hpp"
+#include "simulation/pore_pressure.hpp"
 #include "simulation/reach.hpp"
 #include "support/error.hpp"
 
@@ -46,6 +48,28 @@ SlideMass slide_mass(const Model& model, const ParticlePlan& plan) {
   return mass;
 }
 
+namespace {
+
+/// c_u = c_u0 + gradient x depth below the ground surface, where the gradient is not 0.
+void add_strength_by_depth(const Model& model, const ParticlePlan& plan, std::vector<double>& c) {
+  if (std::ranges::none_of(model.materials, [](const Material& m) { return m.c_gradient > 0.0; })) return;
+  const std::vector<double> depth = depths(model, plan.soil);
+  for (std::size_t i = 0; i < c.size(); ++i)
+    c[i] += model.materials[static_cast<std::size_t>(plan.soil[i].material)].c_gradient * depth[i];
+}
+
+/// Friction as the carried pore pressure leaves it; undrained soil has none.
+void apply_water(const Model& model, const ParticlePlan& plan, std::vector<double>& tan_phi) {
+  if (has_pore_pressure(model)) {
+    const std::vector<double> ratio = pore_pressure_ratios(model, plan.soil);
+    for (std::size_t i = 0; i < tan_phi.size(); ++i) tan_phi[i] = total_stress_friction(tan_phi[i], ratio[i]);
+  }
+  for (std::size_t i = 0; i < tan_phi.size(); ++i)
+    if (model.materials[static_cast<std::size_t>(plan.soil[i].material)].undrained) tan_phi[i] = 0.0;
+}
+
+}  // namespace
+
 SoilProperties material_properties(const Model& model, const ParticlePlan& plan) {
   SoilProperties properties;
   for (const SoilPoint& point : plan.soil) {
@@ -53,6 +77,7 @@ SoilProperties material_properties(const Model& model, const ParticlePlan& plan)
     properties.tan_phi.push_back(std::tan(material.phi));
     properties.c.push_back(material.c);
   }
+  add_strength_by_depth(model, plan, properties.c);
   return properties;
 }
 
@@ -110,6 +135,7 @@ Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& p
   Soil soil;
   for_each_state(soil, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
   soil.tan_phi = properties.tan_phi;
+  apply_water(model, plan, soil.tan_phi);
   soil.c = properties.c;
   soil.x_sorted.resize(points.size());
   soil.y_sorted.resize(points.size());
@@ -129,7 +155,7 @@ Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& p
   return soil;
 }
 
-WallParticles make_walls(const std::vector<WallPoint>& points, double dx) {
+WallParticles make_walls(const std::vector<WallPoint>& points, double dx, std::span<const Boundary> boundaries) {
   WallParticles walls;
   walls.volume = dx * dx;
   for (const WallPoint& w : points) {
@@ -138,7 +164,9 @@ WallParticles make_walls(const std::vector<WallPoint>& points, double dx) {
     walls.nx.push_back(w.n.x);
     walls.ny.push_back(w.n.y);
     walls.depth.push_back(w.depth);
-    walls.boundary.push_back(w.boundary);
+    const double foot = w.x.x + w.depth * w.n.x;
+    walls.boundary.push_back(
+        static_cast<std::int32_t>(friction_index(boundaries, static_cast<std::size_t>(w.boundary), foot)));
   }
   for_each_wall_real(walls, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
   return walls;

@@ -8,6 +8,7 @@
 
 #include "integrate/schemes.hpp"
 #include "simulation/observables.hpp"
+#include "simulation/pore_pressure.hpp"
 #include "support/error.hpp"
 
 namespace talus {
@@ -23,6 +24,13 @@ bool departed(const Terrain& terrain, Vec2 x) {
 constexpr std::int64_t observation_interval = 20;  ///< steps between two observations of rest and density
 constexpr std::int64_t thickness_interval = 100;   ///< the same of the thickness, which takes longer
 
+/// Pore pressure ratios by id, where softened friction depends on them.
+std::vector<double> ratios_for_softening(const Model& model, const ParticlePlan& plan) {
+  const bool softens =
+      std::ranges::any_of(model.materials, [](const Material& m) { return m.softening && m.softening->phi; });
+  return softens && has_pore_pressure(model) ? pore_pressure_ratios(model, plan.soil) : std::vector<double>{};
+}
+
 /// Adds up the times of parts of a run.
 StageTimes operator+(const StageTimes& a, const StageTimes& b) {
   return {a.sort + b.sort,   a.lists + b.lists,       a.gradient + b.gradient,
@@ -34,12 +42,14 @@ StageTimes operator+(const StageTimes& a, const StageTimes& b) {
 Simulation::Simulation(const Model& model, const ParticlePlan& plan, const SoilProperties& properties)
     : model_(model),
       soil_(make_soil(model, flow_constants(model), plan, properties)),
-      walls_(make_walls(plan.walls, model.dx)),
+      walls_(make_walls(plan.walls, model.dx, model.boundaries)),
       flow_(make_flow(flow_constants(model), soil_)),
       neighbours_(walls_, constants().h, model.dx),
       starts_(plan.soil, bounding_box(model.slide)),
       contact_(wall_lines(model.boundaries, model.dx, model.placement), wall_friction(model.boundaries), model.dx,
-               model.g, plan.soil.size()),
+               model.g, plan.soil.size(), model.boundaries),
+      drag_(constants(), walls_),
+      strength_loss_(model, constants(), soil_, ratios_for_softening(model, plan)),
       energy_account_(constants(), soil_),
       rest_rule_(model.time.stop_at_rest),
       bounds_(step_bounds(model, constants())),
@@ -49,6 +59,8 @@ void Simulation::step(double until) {
   const double dt = choose_step(until);
   neighbours_.prepare(soil_, walls_, *flow_, dt, max_speed_);
   filter_density_if_due();
+  lose_strength(dt);
+  drag_along_the_bed();
   StepExtrema extrema = flow_step(dt);
 
   Stopwatch watch;
@@ -94,6 +106,23 @@ void Simulation::filter_density_if_due() {
   const double before = compression_energy(constants(), soil_);
   flow_->filter_density(soil_, walls_, neighbours_.cells());
   energy_account_.filtered(before - compression_energy(constants(), soil_));
+  watch.lap(times_.update);
+}
+
+/// The first evaluation of the step returns the elastic stress to the yield surface.
+void Simulation::lose_strength(double dt) {
+  if (!strength_loss_.active()) return;
+  Stopwatch watch;
+  const double ahead = model_.numerics.integrator == Integrator::leapfrog ? 0.5 * dt : 0.0;
+  if (strength_loss_.act(*flow_, soil_, ahead, steps_)) flow_->strength_changed(soil_);
+  watch.lap(times_.update);
+}
+
+void Simulation::drag_along_the_bed() {
+  if (!drag_.active()) return;
+  Stopwatch watch;
+  drag_.act(soil_, walls_);
+  flow_->drag_changed(walls_);
   watch.lap(times_.update);
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "integrate/flow.hpp"
+#include "simulation/basal_drag.hpp"
 #include "simulation/checkpoint_state.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/energy_account.hpp"
@@ -16,6 +17,7 @@
 #include "simulation/neighbour_upkeep.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/run_result.hpp"
+#include "simulation/strength_loss.hpp"
 
 namespace talus {
 
@@ -67,6 +69,8 @@ class Simulation {
   double choose_step(double until) const;
   StepExtrema flow_step(double dt);
   void filter_density_if_due();
+  void lose_strength(double dt);
+  void drag_along_the_bed();
   void check(const StepExtrema& extrema) const;
   [[noreturn]] void report_divergence() const;
   void meet_the_ground(StepExtrema& extrema);
@@ -87,6 +91,8 @@ class Simulation {
   NeighbourUpkeep neighbours_;
   StartingPositions starts_;
   GroundContact contact_;
+  BasalDrag drag_;
+  StrengthLoss strength_loss_;
   EnergyAccount energy_account_;
   FlowThickness flow_thickness_;
   RestRule rest_rule_;

@@ -23,8 +23,10 @@ bool limit_pair_loops(const std::string& name);
 void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Range range);
 /// Packs what does not change of the soil while its order stays: cohesion and friction.
 void pack_strength(PackedFlow& f, const Soil& soil);
-/// Packs what does not change of all walls: place, normal, depth and friction.
+/// Packs what does not change of all walls: place, normal, depth and friction; and their cohesion.
 void pack_walls(PackedFlow& f, const FlowConstants& k, const WallParticles& walls);
+/// Packs the cohesion of all walls, with what the speed of the flow adds to it.
+void pack_wall_cohesion(PackedFlow& f, const FlowConstants& k, const WallParticles& walls);
 
 /// Which neighbours to list.
 struct NeighbourSearch {

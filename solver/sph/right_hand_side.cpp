@@ -121,6 +121,7 @@ struct Passes {
     const double dynamic_i = dynamic(i);
     auto sums = FlowRateSums<double>::zero();
     MohrCoulomb<double> strength{soil.c[i], soil.tan_phi[i]};
+    const double p_i = wall_law.turbulent ? pressure_of(k, SoilPoint{k, soil, nullptr, i}) : 0.0;
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double VF = volume(j) * minus_F(r2);
       sums.add(VF, density(j), v_i - vector(soil.velocity(j)), r, by_mass);
@@ -131,8 +132,8 @@ struct Passes {
       const WallPair<double> w = wall_law.pair(r, v_i, wall_particle(j));
       if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
       sums.add(walls.volume * minus_F(r2), rho_i, w.v_ij, r, by_mass);
-      const MohrCoulomb<double> of_wall{boundary(j).c, boundary(j).tan_phi};
-      strength = interface_strength(strength, of_wall, w.distance < wall_law.thickness);
+      const MohrCoulomb<double> of_wall{wall_cohesion(k, walls, j), boundary(j).tan_phi};
+      strength = wall_law.strength(strength, of_wall, p_i, w.distance < wall_law.thickness);
     });
     const double to_diffusion = 2.0 * k.numerics.delta * k.h * k.c_s * sigma;
     update_point(k, Model(k.rheology), sums.rates(-sigma, to_diffusion, by_mass, rho_i), strength,
@@ -147,7 +148,8 @@ struct Passes {
     });
     const WallFriction& friction = boundary(w);
     const WallStress<double> wall =
-        sum.value(k, vector(walls.normal(w)), {friction.c, friction.tan_phi}, friction.slip == WallSlip::free_slip);
+        sum.value(k, vector(walls.normal(w)), {wall_cohesion(k, walls, w), friction.tan_phi},
+                  friction.slip == WallSlip::free_slip);
     walls.p[w] = wall.p;
     walls.density_ratio[w] = wall.density_ratio;
     walls.sxx[w] = wall.s.xx;

@@ -157,6 +157,7 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   mutations.spoil(example("surfaces"));
   mutations.spoil(example("joined"));
   mutations.spoil(example("mu-i"));
+  mutations.spoil(example("soil"));
   // The forms that the examples do not hold: the other file, the other step.
   json other = example("surfaces");
   other["slide"] = {{"ground_surface_m", {{0, 20}, {6, 20}, {24, 6}}}, {"slip_surface_csv", "case-bed.csv"}};
@@ -169,6 +170,14 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   for (json* material : {&other["material"], &other["slide"]["outlines"][0]["material"]}) {
     (*material)["mu_i"] = {{"high_rate_friction_angle_deg", 40}, {"grain_diameter_mm", 3}};
   }
+  mutations.spoil(other);
+  other["material"] = {{"density_kg_m3", 1800},
+                       {"undrained_strength_Pa", 2e4},
+                       {"softening", {{"residual_undrained_strength_Pa", 5e3}, {"plastic_shear_strain", 0.1}}}};
+  other["slide"]["outlines"][0]["material"] = {{"undrained_strength_gradient_kPa_m", 1}};
+  mutations.spoil(other);
+  other = example("joined");
+  other["water"] = {{"phreatic_line_csv", "case-bed.csv"}};
   mutations.spoil(other);
   other = example("joined");
   other["terrain"] = {{"ground_beyond_csv", "case-bed.csv"}};
