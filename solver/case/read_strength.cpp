@@ -71,7 +71,8 @@ void check_residual(ObjectReader& in, const char* residual_key, double residual,
                       to_text(residual) + "; give this layer a softening of its own");
 }
 
-void read_residuals(ObjectReader& in, Softening& s, bool undrained) {
+void read_residuals(ObjectReader& in, MaterialInput& m, Softening& s) {
+  const bool undrained = m.undrained;
   std::optional<double> angle, cohesion, strength;
   in.optional_number("residual_friction_angle_deg", angle, friction_angle_range,
                      {"Residual friction angle, at most the peak one. A random field varies the peak; a particle whose "
@@ -97,7 +98,10 @@ void read_residuals(ObjectReader& in, Softening& s, bool undrained) {
     in.fault("",
              "states no residual strength: residual_friction_angle_deg, residual_cohesion_kPa or "
              "residual_undrained_strength_kPa");
-  if (angle) s.phi = radians(*angle);
+  if (angle) {
+    s.phi = radians(*angle);
+    m.residual_angle_deg = *angle;
+  }
   s.c = undrained ? strength : cohesion;
 }
 
@@ -173,14 +177,15 @@ void read_softening(ObjectReader& in, MaterialInput& m) {
   in.object("softening", "Loss of strength from peak to residual as the soil shears; with rheology.yield elastic.",
             Absent::skip, [&](ObjectReader& section) {
               Softening s;
-              read_residuals(section, s, m.undrained);
+              read_residuals(section, m, s);
               read_extent(section, s);
               m.softening = s;
             });
   if (!m.softening) return;
   const Softening& s = *m.softening;
   if (s.phi)
-    check_residual(in, "residual_friction_angle_deg", degrees(*s.phi), "friction_angle_deg", degrees(m.phi), own);
+    check_residual(in, "residual_friction_angle_deg", m.residual_angle_deg, "friction_angle_deg", m.friction_angle_deg,
+                   own);
   if (s.c && m.c_gradient == 0.0)
     check_residual(in, m.undrained ? "residual_undrained_strength_Pa" : "residual_cohesion_Pa", *s.c,
                    m.undrained ? undrained_keys[0] : "cohesion_Pa", m.c, own);

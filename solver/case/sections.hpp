@@ -35,6 +35,7 @@ void read_lattice(ObjectReader& in, Model& m);
 struct MaterialInput : Material {
   double friction_angle_deg = 0.0;
   double gradient_kPa_m = 0.0;                 ///< of the undrained strength
+  double residual_angle_deg = 0.0;             ///< of softening, where it states one
   double high_rate_friction_angle_deg = 90.0;  ///< of mu_i
 };
 

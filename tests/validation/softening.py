@@ -11,15 +11,16 @@ from snapshots import Snapshots
 TITLE = "Loss of strength"
 SOURCE = ("no measurement: the run-out must not depend on the particle spacing. Slump: properties of Wyser, Alkhimenkov, Jaboyedoff & Podladchikov 2021, Geosci. Model Dev. 14, 7749-7774, "
           "doi:10.5194/gmd-14-7749-2021, slumping mechanics in section")
-REMARKS = ("The slope fails as a whole: shear spreads over its thickness, and only in part does it run along bands. A length that goes with the spacing is then no better than a strain; both leave the run-out to the spacing. "
-           "A stated width of the bands takes the same strength off at every spacing.\n\n"
+REMARKS = ("The slope fails as a whole: shear spreads over its thickness, and only in part does it run along bands. A width of the bands that goes with the spacing is then no better than a strain; both leave the run-out to the "
+           "spacing. With a stated width it has no trend.\n\n"
            "The slump is a description, no comparison: of its shape no numbers are published to which ours could be compared, our geometry is a guess (a face of 51 degrees over the full height on a rough level bed), "
            "the cohesion is the same everywhere where the paper draws a field, and the weight acts at once.")
-NOT_MET = {}
+NOT_MET = {"displacement 0.4 m:": 0.5, "plastic": 0.3}
 
 SPACINGS = (0.8, 0.4, 0.2)
 WAYS = {"displacement 0.4 m": {"displacement_m": 0.4}, "displacement 0.4 m, bands of 1.6 m": {"displacement_m": 0.4, "band_width_m": 1.6},
         "plastic shear strain 0.25": {"plastic_shear_strain": 0.25}}
+TOE = 21.325  # of the slope before it fails [m]
 BED = [[0, 8.2], [14.202, 0], [60, 0]]
 
 
@@ -53,7 +54,7 @@ def measure(work, coarse):
     def run(job):
         way, spacing = job
         result = talus_runs.run(slope(spacing, way), work / "softening" / f"{list(WAYS).index(way)}-{spacing}", threads=1)
-        return {"way": way, "spacing_m": spacing, "front_m": result["measures"]["front_mass_99_m"] if "measures" in result else result["front_mass_99_m"]}
+        return {"way": way, "spacing_m": spacing, "front_m": result["front_mass_99_m"]}
 
     directory = work / "softening" / "slump"
     talus_runs.run(slump(2 * SLUMP_SPACING if coarse else SLUMP_SPACING), directory, threads=1)
@@ -76,9 +77,8 @@ def fronts(numbers, way):
 def criteria(numbers):
     found = []
     for way in WAYS:
-        of = fronts(numbers, way)
-        fine, coarse = sorted(of)[:2]
-        found.append(at_most(f"{way}: change of the 99 % front from {coarse:g} to {fine:g} m [m]", abs(of[fine] - of[coarse]), 1.0))
+        of = list(fronts(numbers, way).values())
+        found.append(at_most(f"{way}: range of the 99 % front over the spacings, share of its travel", (max(of) - min(of)) / (max(of) - TOE), 0.1, "the aim; set after trials of these runs"))
     return found
 
 
