@@ -171,10 +171,29 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
     (*material)["mu_i"] = {{"high_rate_friction_angle_deg", 40}, {"grain_diameter_mm", 3}};
   }
   mutations.spoil(other);
+  const json drained_softening = {{"residual_cohesion_Pa", 0}, {"displacement_m", 0.1}, {"band_width_m", 2}};
+  other["material"] = {{"density_kg_m3", 1800},
+                       {"undrained_strength_kPa", 20},
+                       {"undrained_strength_gradient_kPa_m", 1},
+                       {"softening", {{"residual_undrained_strength_kPa", 5}, {"plastic_shear_strain", 0.1}}}};
+  other["slide"]["outlines"][0]["material"] = {{"friction_angle_deg", 20}, {"softening", drained_softening}};
+  mutations.spoil(other);
+  other["material"] = {{"density_kg_m3", 1800},
+                       {"friction_angle_deg", 20},
+                       {"cohesion_kPa", 2},
+                       {"r_u", 0.1},
+                       {"softening", drained_softening}};
+  other["slide"]["outlines"][0]["material"] = {
+      {"undrained_strength_Pa", 2e4},
+      {"softening", {{"residual_undrained_strength_Pa", 5e3}, {"displacement_m", 0.1}}}};
+  mutations.spoil(other);
+  other["material"]["softening"] = {{"residual_cohesion_kPa", 0}, {"displacement_m", 0.1}};
+  other["material"].erase("r_u");
+  other["slide"]["outlines"][0].erase("material");
+  mutations.spoil(other);
   other["material"] = {{"density_kg_m3", 1800},
                        {"undrained_strength_Pa", 2e4},
-                       {"softening", {{"residual_undrained_strength_Pa", 5e3}, {"plastic_shear_strain", 0.1}}}};
-  other["slide"]["outlines"][0]["material"] = {{"undrained_strength_gradient_kPa_m", 1}};
+                       {"softening", {{"residual_undrained_strength_Pa", 5e3}, {"displacement_m", 0.1}}}};
   mutations.spoil(other);
   other = example("joined");
   other["water"] = {{"phreatic_line_csv", "case-bed.csv"}};

@@ -2,6 +2,8 @@
 
 import math
 
+import figures  # chooses the back end
+import matplotlib.pyplot as plt
 import numpy as np
 
 import talus_runs
@@ -13,7 +15,7 @@ SOURCE = ("no measurement: the run-out must not depend on the particle spacing. 
           "doi:10.5194/gmd-14-7749-2021, slumping mechanics in section")
 REMARKS = ("The slope fails as a whole: shear spreads over its thickness, and only in part does it run along bands. A width of the bands that goes with the spacing is then no better than a strain; both leave the run-out to the "
            "spacing. With a stated width it has no trend.\n\n"
-           "The slump is a description, no comparison: of its shape no numbers are published to which ours could be compared, our geometry is a guess (a face of 51 degrees over the full height on a rough level bed), "
+           "The slump is a description, no comparison: we know of no published numbers of its shape, our geometry is a guess (a face of 51 degrees over the full height on a rough level bed), "
            "the cohesion is the same everywhere where the paper draws a field, and the weight acts at once.")
 NOT_MET = {"displacement 0.4 m:": 0.5, "plastic": 0.3}
 
@@ -65,9 +67,22 @@ def shape(snapshots):
     """Of the slump: what has moved by more than a metre, and how deep below the ground before."""
     last = len(snapshots.times) - 1
     start, moved = snapshots.position(0), np.hypot(*snapshots.field("displacement", last)[:, :2].T)
-    slipped = start[moved > 1.0]
+    slipped, end = start[moved > 1.0], snapshots.position(last)
     return {"share": float(np.mean(moved > 1.0)), "from_x_m": float(slipped[:, 0].min()), "deepest_m": float(HEIGHT - slipped[:, 1].min()), "farthest_m": float(moved.max()),
-            "softened": float(np.mean(snapshots.field("cohesion", last) < 19e3))}
+            "softened": float(np.mean(snapshots.field("cohesion", last) < 19e3)),
+            "end": {"x_m": np.round(end[:, 0], 2).tolist(), "y_m": np.round(end[:, 1], 2).tolist(), "cohesion_kPa": np.round(snapshots.field("cohesion", last) / 1e3, 1).tolist()}}
+
+
+def draw(end, directory):
+    """Cohesion of the slump at its end, and its outline before."""
+    crest = LENGTH - 20 - HEIGHT / math.tan(math.radians(FACE))
+    figure, axes = plt.subplots(figsize=(9, 2.6), layout="constrained")
+    dots = axes.scatter(end["x_m"], end["y_m"], s=3, c=end["cohesion_kPa"], cmap="viridis", linewidths=0)
+    axes.plot([0, crest, LENGTH - 20], [HEIGHT, HEIGHT, 0], color="black", linewidth=0.8, label="ground before")
+    axes.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
+    axes.legend(loc="upper right")
+    figure.colorbar(dots, label="cohesion [kPa]")
+    return figures.save(figure, directory, "softening")
 
 
 def fronts(numbers, way):
@@ -88,4 +103,4 @@ def section(numbers, directory):
     s = numbers["slump"]
     return ("Front of 99 % of the mass of a slope of 30 degrees, c = 10 -> 0 kPa, phi = 25 -> 15 degrees, 1,500 Pa s [m]:\n\n" + table(["strength is residual after a"] + [f"{x:g} m" for x in spacings], rows) +
             f"\nSlump: {100 * s['share']:.0f} % of the soil moved by more than 1 m, from x = {s['from_x_m']:.1f} m on and down to {s['deepest_m']:.1f} m below the former ground; "
-            f"the farthest particle moved by {s['farthest_m']:.1f} m, and {100 * s['softened']:.0f} % of the soil lost more than 1 kPa of its cohesion.\n")
+            f"the farthest particle moved by {s['farthest_m']:.1f} m, and {100 * s['softened']:.0f} % of the soil lost more than 1 kPa of its cohesion. A curved surface runs from behind the crest to the toe; a block of the face that keeps its strength rides on the softened soil.\n\n" + draw(s["end"], directory))
