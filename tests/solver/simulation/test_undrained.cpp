@@ -39,7 +39,8 @@ TEST(Undrained, KeepsNoFrictionWhateverAFieldDraws) {
   const ParticlePlan plan = plan_particles(m);
   SoilProperties drawn = material_properties(m, plan);
   drawn.tan_phi.assign(drawn.tan_phi.size(), 0.4);
-  for (const double tan_phi : Simulation(m, plan, drawn).soil().tan_phi) EXPECT_EQ(tan_phi, 0.0);
+  const Simulation simulation(m, plan, drawn);
+  for (const double tan_phi : simulation.soil().tan_phi) EXPECT_EQ(tan_phi, 0.0);
 }
 
 // The infinite slope: tau = gamma H sin(beta) cos(beta) at the base against c_u0 + k H.
