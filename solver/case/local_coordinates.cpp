@@ -45,6 +45,12 @@ void use_local_coordinates(Case& c) {
   m.terrain.run_out.from = local(m.terrain.run_out.from, origin.x);
   for (Boundary& boundary : m.boundaries) move(boundary.line.vertices, origin);
   for (SlidePart& part : m.slide) move(part.outline, origin);
+  for (Target& target : m.targets) {
+    target.from = local(target.from, origin.x);
+    target.to = local(target.to, origin.x);
+    if (target.structure)
+      target.structure->foot = {local(target.structure->foot.x, origin.x), local(target.structure->foot.y, origin.y)};
+  }
   if (c.field && c.field->domain) {
     Box& domain = *c.field->domain;
     domain = {{local(domain.lo.x, origin.x), local(domain.lo.y, origin.y)},

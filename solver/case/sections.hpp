@@ -10,10 +10,22 @@
 
 namespace talus {
 
+/// A target as it is written; the ground decides where it stands.
+struct TargetInput {
+  std::string pointer;  ///< "/targets/0"
+  std::string name;
+  TargetKind kind = TargetKind::point;
+  std::vector<double> x;            ///< point_m, stretch_m or structure/x_m
+  std::optional<double> height;     ///< of a structure with x_m [m]
+  Vertices outline;                 ///< of a structure; empty: given by x_m and height_m
+  std::optional<double> averaging;  ///< [s]
+};
+
 /// Where the vertices of bed and outlines are written.
 struct SourceLocations {
   Vertices bed;
   std::vector<Vertices> outlines;  ///< of each slide part
+  std::vector<TargetInput> targets;
   std::vector<std::string> files;  ///< CSV files with the form in which they were read
 
   void note_file(const Vertices& v) {
@@ -58,6 +70,16 @@ SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, 
 /// @param origins  returns where the bed's vertices are written
 void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& directory, const SlideInput& slide,
                   double dx, SourceLocations& origins);
+
+// read_targets.cpp
+void read_target(ObjectReader& in, const std::filesystem::path& directory, TargetInput& target);
+
+// add_targets.cpp
+/// Puts the targets on the ground: Model::targets, and a boundary for each structure, with the walls' slip and
+/// strength. Faults: a name twice; a place off the terrain, in the ground or on the slide; a structure without extent,
+/// thinner than the particles can see, in the air or over another one.
+/// @param model  terrain, slide, spacing and walls without faults
+void add_targets(Model& model, const SourceLocations& origins, Faults& faults);
 
 // read_statistics.cpp
 void read_field(ObjectReader& in, FieldSpec& spec);

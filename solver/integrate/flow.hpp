@@ -11,6 +11,7 @@
 #include "particles/particles.hpp"
 #include "sph/right_hand_side.hpp"
 #include "sph/step_extrema.hpp"
+#include "sph/wall_load.hpp"
 
 namespace talus {
 
@@ -34,6 +35,15 @@ class Flow {
   /// @param powers  where not null: filled with the powers in the middle of the step
   virtual StepExtrema step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt,
                            Powers* powers = nullptr) = 0;
+
+  /// From now on every step sums up the load of the soil on these boundaries.
+  void observe_loads(std::vector<LoadedBoundary> boundaries) {
+    loaded_ = std::move(boundaries);
+    loads_.assign(loaded_.size(), {});
+  }
+  /// Loads in the middle of the last step on each of those boundaries, the sum of the soil-wall terms of the momentum
+  /// equation with the opposite sign: what the soil's momentum loses, step by step.
+  const std::vector<WallLoad>& loads() const { return loads_; }
 
   /// One pass of the Shepard filter over the densities of the active soil.
   void filter_density(Soil& soil, const WallParticles& walls, const ParticleCells& cells) {
@@ -68,6 +78,8 @@ class Flow {
  protected:
   FlowConstants constants_;
   StageTimes times_;
+  std::vector<LoadedBoundary> loaded_;
+  std::vector<WallLoad> loads_;
 };
 
 /// Pressure of the density of soil particle i [Pa], with the tension cut-off where the options ask for it.

@@ -56,10 +56,13 @@ class VectorisedFlow final : public Flow {
   void evaluate_in_region(Soil& soil, WallParticles& walls, double ahead, bool commit, bool pack, bool measure,
                           Stopwatch& watch);
 
+  void sum_loads_in_region();
+
   PackedFlow flow_;
-  std::vector<std::size_t> work_ = {0};  ///< neighbours to sum over in all batches before each one
-  std::vector<ThreadRange> ranges_;      ///< by thread
-  bool present_is_packed_ = false;       ///< the packed arrays hold the present state
+  std::vector<WallLoad> load_of_cluster_;  ///< of the last step, cluster by cluster for each boundary
+  std::vector<std::size_t> work_ = {0};    ///< neighbours to sum over in all batches before each one
+  std::vector<ThreadRange> ranges_;        ///< by thread
+  bool present_is_packed_ = false;         ///< the packed arrays hold the present state
 };
 
 }  // namespace talus

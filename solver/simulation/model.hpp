@@ -6,6 +6,7 @@
 
 #include "material/material.hpp"
 #include "particles/geometry_input.hpp"
+#include "simulation/target.hpp"
 #include "sph/numerics.hpp"
 
 namespace talus {
@@ -30,7 +31,7 @@ struct TimeControl {
 /// A deterministic problem in SI units and radians. `case/` makes it from JSON.
 struct Model {
   Terrain terrain;                   ///< what is measured from and drawn; the flow sees the boundaries
-  std::vector<Boundary> boundaries;  ///< at least one: the ground_line() of the terrain
+  std::vector<Boundary> boundaries;  ///< at least one: the ground_line() of the terrain; then structures
   std::vector<SlidePart> slide;
   std::vector<Material> materials;  ///< at least one
   double left_out = 0.0;            ///< mass of films that the outlines held, too thin for particles [kg/m]
@@ -43,6 +44,7 @@ struct Model {
   Walls walls;
   TimeControl time;
   std::size_t max_particles = 4'000'000;  ///< refuse to fill more than this
+  std::vector<Target> targets = {};       ///< places to observe, and structures, each of which has a boundary
   bool operator==(const Model&) const = default;
 };
 

@@ -54,6 +54,8 @@ HistoryRow Simulation::history_row() const {
           max_speed_, energy()};
 }
 
+std::vector<TargetRow> Simulation::target_rows() const { return gauges_.rows(soil_, model_.materials, time_, steps_); }
+
 EnergyBudget Simulation::energy() const {
   return energy_account_.budget(constants(), soil_, starts_, time_, contact_.taken());
 }
@@ -149,6 +151,14 @@ void Simulation::add_friction_facts(RunFacts& f) const {
   f.travel = moment / mass;
 }
 
+/// Soil that slides on friction, or creeps, may still reach what lies no farther ahead of it than that takes it.
+std::vector<TargetOutcome> Simulation::target_outcomes() const {
+  const double front = farthest(soil_, model_.terrain.run_out);
+  return gauges_.outcomes(soil_, model_.materials, model_.terrain.run_out, at_rest(),
+                          rest_speed * std::sqrt(norm(model_.g) * fall_height(model_)),
+                          front + std::max(run_on(), creep()));
+}
+
 RunFacts Simulation::facts() const {
   std::vector<Vec2> starts;
   for (std::size_t id = 0; id < soil_.size(); ++id) starts.push_back(starts_[static_cast<std::int32_t>(id)]);
@@ -191,6 +201,7 @@ RunResult Simulation::result() const {
   r.backend = backend();
   r.simd = simd();
   r.energy = energy();
+  r.targets = target_outcomes();
   return r;
 }
 

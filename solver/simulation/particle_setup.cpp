@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string>
 
+#include "particles/ground.hpp"
 #include "simulation/reach.hpp"
 #include "support/error.hpp"
 
@@ -18,6 +19,17 @@ ParticleEstimate estimate_particles(const Model& model, std::span<const Polyline
   return estimate;
 }
 
+namespace {
+
+/// Takes out the particles of a structure that would stand in the ground, or too near to the first row behind its
+/// surface: the ground is lined there already.
+void remove_founded(std::vector<WallPoint>& points, const Polyline& ground_line, double dx) {
+  const Ground ground({ground_line});
+  std::erase_if(points, [&](const WallPoint& point) { return ground.nearest(point.x).distance < 0.25 * dx; });
+}
+
+}  // namespace
+
 ParticlePlan plan_particles(const Model& model) {
   const std::vector<Polyline> walls = wall_lines(model.boundaries, model.dx, model.placement);
   const double estimate = estimate_particles(model, walls).count(model.dx);
@@ -28,9 +40,11 @@ ParticlePlan plan_particles(const Model& model) {
                                                  " (max_particles); use a larger spacing");
   ParticlePlan plan{fill_slide(model.slide, walls, model.dx, model.placement, model.terrain.run_out.to, model.lattice),
                     {}};
-  for (std::size_t b = 0; b < walls.size(); ++b)
-    std::ranges::move(fill_walls(walls[b], model.dx, model.walls.layers, static_cast<std::int32_t>(b)),
-                      std::back_inserter(plan.walls));
+  for (std::size_t b = 0; b < walls.size(); ++b) {
+    std::vector<WallPoint> points = fill_walls(walls[b], model.dx, model.walls.layers, static_cast<std::int32_t>(b));
+    if (b > 0) remove_founded(points, walls.front(), model.dx);
+    std::ranges::move(points, std::back_inserter(plan.walls));
+  }
   if (plan.soil.empty())
     throw ConfigError("/particle_spacing_m", "no soil particle fits into the slide; use a smaller spacing");
   return plan;

@@ -41,9 +41,13 @@ Simulation::Simulation(const Model& model, const ParticlePlan& plan, const SoilP
       contact_(wall_lines(model.boundaries, model.dx, model.placement), wall_friction(model.boundaries), model.dx,
                model.g, plan.soil.size()),
       energy_account_(constants(), soil_),
+      gauges_(model.targets, model.terrain.run_out.to, model.dx),
       rest_rule_(model.time.stop_at_rest),
       bounds_(step_bounds(model, constants())),
-      max_acceleration_(norm(model.g)) {}
+      max_acceleration_(norm(model.g)) {
+  flow_->observe_loads(gauges_.structures());
+  contact_.observe_loads(gauges_.structures());
+}
 
 void Simulation::step(double until) {
   const double dt = choose_step(until);
@@ -57,6 +61,7 @@ void Simulation::step(double until) {
   evaluations_ += evaluations_per_step(model_.numerics.integrator);
   check(extrema);
   meet_the_ground(extrema);
+  add_loads(dt);
   max_speed_ = extrema.max_speed;
   max_acceleration_ = extrema.max_acceleration;
   peak_speed_ = std::max(peak_speed_, max_speed_);
@@ -64,6 +69,7 @@ void Simulation::step(double until) {
   if (steps_ % observation_interval == 0) {
     if (rest_rule_.active()) rest_rule_.observe(time_, rms_speed(soil_));
     peak_density_rise_ = std::max(peak_density_rise_, density_rise());
+    gauges_.observe(soil_, model_.materials, time_);
   }
   if (steps_ % thickness_interval == 0) flow_thickness_.observe(soil_, model_.materials, model_.dx, time_);
   retire_departed(extrema);
@@ -124,6 +130,14 @@ void Simulation::meet_the_ground(StepExtrema& extrema) {
   extrema.max_displacement += put_back;
   extrema.moved_since_sort += put_back;
   flow_->state_changed();
+}
+
+/// What pressed on the structures in the step, and what single particles that hit them lost.
+void Simulation::add_loads(double dt) {
+  if (flow_->loads().empty()) return;
+  std::vector<WallLoad> loads = flow_->loads();
+  for (std::size_t s = 0; s < contact_.impulses().size(); ++s) loads[s] += (1.0 / dt) * contact_.impulses()[s];
+  gauges_.add_loads(loads, dt, time_);
 }
 
 /// Soil that left the terrain stops taking part: it is swapped behind the active ones and keeps its last state.

@@ -16,6 +16,7 @@
 #include "simulation/neighbour_upkeep.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/run_result.hpp"
+#include "simulation/target_gauges.hpp"
 
 namespace talus {
 
@@ -48,6 +49,8 @@ class Simulation {
   /// All particles in order of id.
   Frame frame() const;
   HistoryRow history_row() const;
+  /// One for each target.
+  std::vector<TargetRow> target_rows() const;
   /// Where the energy of the run is and has gone.
   EnergyBudget energy() const;
   /// Everything but wall clock, threads, field and quality, which the caller knows.
@@ -70,6 +73,7 @@ class Simulation {
   void check(const StepExtrema& extrema) const;
   [[noreturn]] void report_divergence() const;
   void meet_the_ground(StepExtrema& extrema);
+  void add_loads(double dt);
   void retire_departed(const StepExtrema& extrema);
   double density_rise() const;
   double relative_speed() const;
@@ -78,6 +82,7 @@ class Simulation {
   bool at_rest() const;
   std::int64_t at_open_end() const;
   void add_friction_facts(RunFacts& f) const;
+  std::vector<TargetOutcome> target_outcomes() const;
   SlideMass mass() const;
 
   Model model_;
@@ -89,6 +94,7 @@ class Simulation {
   GroundContact contact_;
   EnergyAccount energy_account_;
   FlowThickness flow_thickness_;
+  TargetGauges gauges_;
   RestRule rest_rule_;
   StepBounds bounds_;
   double time_ = 0.0;               ///< [s]

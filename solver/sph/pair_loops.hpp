@@ -8,6 +8,7 @@
 #include "sph/flow_constants.hpp"
 #include "sph/packed_flow.hpp"
 #include "sph/step_extrema.hpp"
+#include "sph/wall_load.hpp"
 
 namespace talus {
 
@@ -50,6 +51,12 @@ void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& wall
 /// Second pass over some of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included. `measure`: writes the
 /// powers of the artificial viscosity and of the walls.
 void momentum_pass(PackedFlow& f, const FlowConstants& k, bool measure, Range clusters);
+
+/// Load of each of some of the soil's clusters on one boundary, at the state of the last evaluation.
+/// @param slot   of the boundary in PackedWalls::slot; @param about  point of the moment [m]
+/// @param loads  written for these clusters
+void load_pass(const PackedFlow& f, const FlowConstants& k, std::int32_t slot, Vec2 about, Range clusters,
+               WallLoad* loads);
 
 /// Moves soil particles on by dt [s] at the present rates, positions with the velocities of the last evaluation
 /// (`midpoint_velocity`) or with the mean of the old and the new ones, and packs the outcome.

@@ -173,6 +173,14 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   other = example("joined");
   other["terrain"] = {{"ground_beyond_csv", "case-bed.csv"}};
   mutations.spoil(other);
+  other = example("targets");
+  mutations.spoil(other);
+  const json structures = {other["targets"][3], other["targets"][4]};
+  other["targets"] = structures;
+  mutations.spoil(other);
+  other["targets"] = {{{"name", "dam"}, {"structure", {{"outline_csv", "case-outline.csv"}}}}};
+  other["study"]["hazard_classes"] = {{{"name", "high"}, {"dynamic_pressure_Pa", 1e4}, {"speed_m_s", 2}}};
+  mutations.spoil(other);
   std::set<std::string> keys;
   collect(test::SchemaCheck("case").document(), "", keys);
   for (const std::string& key : keys) EXPECT_TRUE(mutations.visited().contains(key)) << key << " was never spoilt";
