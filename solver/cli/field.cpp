@@ -10,6 +10,7 @@
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "cli/xi_file.hpp"
+#include "figures/ground.hpp"
 #include "figures/profile.hpp"
 #include "io/vtkhdf.hpp"
 #include "math/angle.hpp"
@@ -101,7 +102,8 @@ void write(const FieldOnParticles& field, const Model& model, const figures::Sta
   frame.position = field.position;
   frame.tan_phi = tan_phi;
   const figures::Snapshot shot{&frame, figures::Colour::friction_angle, "Before the slide"};
-  figures::plot_profiles({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
+  figures::plot_profiles({&shot, 1}, model.terrain, model.dx, path, stamps,
+                         {.mark_front = false, .structures = figures::structures_of(model)});
 }
 
 Exit field(const FieldOptions& options) {

@@ -83,7 +83,8 @@ void colour_axis(Script& script, Colour colour, ColourRange range) {
   script("set cbtics ", nice_step(range.hi - range.lo, 4));
 }
 
-void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRange range, bool mark_front) {
+void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRange range, bool mark_front,
+                const std::vector<Polyline>& structures) {
   const Panel& panel = d.layout.panels[k];
   const std::string tag = std::to_string(k);
   d.sheet.place(panel);
@@ -95,7 +96,8 @@ void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRan
   const std::string caption = shot.caption.empty() ? "t = " + fixed(shot.frame->time, 2) + " s" : shot.caption;
   d.sheet.text(panel.left, panel.top - 12, caption, {.points = 11, .bold = true});
   const GroundElements bed = ground_elements(d.sheet.script, ground_line(d.terrain), d.view, d.layout.metre, tag);
-  std::vector<std::string> elements = bed.behind;
+  std::vector<std::string> elements = structure_elements(d.sheet.script, structures, tag);
+  elements.insert(elements.end(), bed.behind.begin(), bed.behind.end());
   std::string bytes;
   if (shot.frame->n_soil > 0) {
     SoilElements soil = d.raster ? soil_image(d, shot, range) : soil_disks(d, shot, tag);
@@ -202,7 +204,7 @@ Sheet profile_sheet(std::span<const Snapshot> snapshots, const Terrain& terrain,
     const double top = mixed ? layout.panels[k].top - 34 : 14;
     if (mixed || k == 0) sheet.colour_bar({bar_right - bar, bar_right, top, top + 10}, scale_of(colour).name);
     colour_axis(sheet.script, colour, range);
-    panel_plot(drawing, k, snapshots[k], range, options.mark_front);
+    panel_plot(drawing, k, snapshots[k], range, options.mark_front, options.structures);
   }
   return sheet;
 }
