@@ -59,6 +59,7 @@ Json links(const Job& job, const Exchange& exchange) {
     all.push_back(link(exchange, path + "/results", "http://www.opengis.net/def/rel/ogc/1.0/results", "Results"));
   if (job.planned == 0 || job.state == JobState::dismissed) return all;
   all.push_back(link(exchange, path + "/histogram", "related", "Histogram of the realizations done so far"));
+  all.push_back(link(exchange, path + "/exceedance", "related", "Probability that a quantity is beyond x"));
   all.push_back(link(exchange, path + "/realizations", "related", "Realizations"));
   all.push_back(link(exchange, path + "/events", "related", "Events", event_stream));
   return all;

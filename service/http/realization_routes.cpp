@@ -44,6 +44,17 @@ Json bins_of(const Json& distribution, const Exchange& exchange, const Job& job)
   return bins;
 }
 
+Answer exceedance(Exchange& exchange) {
+  only_parameters(exchange.request, {"quantity", "x"});
+  const Job job = study_of(exchange);
+  const auto name = exchange.request.parameter("quantity");
+  const auto text = exchange.request.parameter("x");
+  const std::optional<double> x = text ? to_number(*text) : std::nullopt;
+  if (text && !x) bad_parameter("x", "must be a number");
+  const std::string asked = Json::parse(job.inputs).at("quantity");
+  return json_answer(exchange.service.jobs.exceedance(job, name.value_or(asked), x));
+}
+
 Answer histogram(Exchange& exchange) {
   const Incoming& request = exchange.request;
   const Job job = study_of(exchange);
@@ -188,6 +199,7 @@ Answer extend(Exchange& exchange) {
 
 Routes realization_routes() {
   return {{"GET", "/jobs/{}/histogram", Role::read, histogram},
+          {"GET", "/jobs/{}/exceedance", Role::read, exceedance},
           {"GET", "/jobs/{}/realizations", Role::read, list_realizations},
           {"GET", "/jobs/{}/realizations/{}", Role::read, one},
           {"GET", "/jobs/{}/realizations/{}/field", Role::read, field, Lane::waiting},

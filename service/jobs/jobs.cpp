@@ -325,6 +325,30 @@ Json Jobs::distribution(const Job& job, const Measure& quantity, const Bins& bin
   });
 }
 
+Json Jobs::exceedance(const Job& job, const std::string& quantity, const std::optional<double>& x) {
+  const std::string key = job.id + "/exceedance/" + quantity + "/" + (x ? to_text(*x) : "");
+  return distributions_.get(key, job.version, ended(job.state) ? milliseconds(0) : histogram_age, [&] {
+    const Plan plan = plan_of(job);
+    const std::optional<StudyQuantity> of = find_quantity(quantity, plan.targets);
+    if (!of)
+      throw Refusal(reason::bad_request, "no such quantity",
+                    {{"?quantity", in_quotes(quantity) + suggestion(quantity, quantity_names(plan.targets))}});
+    const bool at_x = of->measure || of->number;
+    if (at_x && !x) throw Refusal(reason::bad_request, "x is missing", {{"?x", "must be a number"}});
+    Json answer = of->measure ? exceedance_at(*of->measure,
+                                              store_.measure_sample(job, *of->measure, plan.study.stop_half_width), *x)
+                              : exceedance_at(target_sample(job, plan, *of->target), of->number, x.value_or(0.0));
+    drop_nulls(answer);
+    return answer;
+  });
+}
+
+TargetSample Jobs::target_sample(const Job& job, const Plan& plan, std::size_t target) {
+  StudySummary summary(plan);
+  store_.records(job.number, RunKind::realization)([&](const Record& record) { summary.add(record); });
+  return summary.target_sample(target);
+}
+
 Json Jobs::summary(const Job& job) {
   const fs::path file = StudyPaths{data_.job(job.id)}.summary();
   const auto read = [&] {

@@ -37,6 +37,10 @@ class Jobs {
 
   /// How a quantity is distributed over the runs done so far, from the records in the database.
   Json distribution(const Job& job, const Measure& quantity, const Bins& bins);
+  /// How likely a quantity of the realizations done so far is beyond x, what `talus stats --at` says: a measure, a
+  /// number of a target ("house.peak_depth_m"), or whether a target is reached ("house", for which x is not used).
+  /// @throws Refusal (bad_request) naming the parameter: no such quantity, x missing
+  Json exceedance(const Job& job, const std::string& quantity, const std::optional<double>& x);
   /// study.json of a job that has ended.
   Json summary(const Job& job);
   /// The friction angles before the failure of the slope, as SVG or JSON.
@@ -82,6 +86,7 @@ class Jobs {
   void repair(const Job& job);
   /// The plan of a job for its present number of realizations, and its tables and study.json, written again.
   Plan plan_of(const Job& job);
+  TargetSample target_sample(const Job& job, const Plan& plan, std::size_t target);
   void publish_again(const Job& job);
 
   const Config& config_;

@@ -76,6 +76,11 @@ struct Run {
 /// The hash of a run's key and record as the queue keeps it; numbers that were not recorded are left out.
 std::string checksum_of(std::int64_t job, const RunKey& key, const Record& record);
 
+/// The targets of a record as the queue keeps them, JSON; unset: it has none.
+std::optional<std::string> targets_text(const Record& record);
+/// The way back. @return false where the text is damaged
+bool read_targets_text(const std::optional<std::string>& text, Record& record);
+
 /// Which jobs to list, newest first.
 struct JobFilter {
   std::optional<std::string> subject = {};

@@ -120,25 +120,27 @@ void visit_runs(SQLite::Database& db, Take take, const std::string& condition, c
   std::string numbers;
   const Record any;
   visit_numbers(any, [&](const char* key, const char*, auto) { numbers += key + std::string(", "); });
-  SQLite::Statement query =
-      statement(db,
-                "SELECT job, level, kind, idx, state, attempt, crashes, " + numbers +
-                    "digest, verdict, verdict_reasons, lower_bounds, reason, exit_code, signal, log_tail, checksum "
-                    "FROM runs WHERE " +
-                    condition,
-                values...);
+  SQLite::Statement query = statement(
+      db,
+      "SELECT job, level, kind, idx, state, attempt, crashes, " + numbers +
+          "digest, verdict, verdict_reasons, lower_bounds, targets, reason, exit_code, signal, log_tail, checksum "
+          "FROM runs WHERE " +
+          condition,
+      values...);
   while (query.executeStep()) {
     Run run;
     Record result{.done = true};
     Failure failure;
-    std::optional<std::string> checksum;
+    std::optional<std::string> checksum, targets;
     Row row(query);
     row >> run.job >> run.key >> run.state >> run.attempt >> run.crashes;
     result.index = run.key.index;
     visit_numbers(result, [&](const char*, const char*, auto& number) { row >> number; });
-    row >> result.digest >> result.verdict >> result.objections >> result.lower_bounds >> failure.reason >>
+    row >> result.digest >> result.verdict >> result.objections >> result.lower_bounds >> targets >> failure.reason >>
         failure.exit_code >> failure.signal >> failure.log_tail >> checksum;
-    run.damaged = run.state == RunState::done && checksum && *checksum != checksum_of(run.job, run.key, result);
+    const bool readable = read_targets_text(targets, result);
+    run.damaged =
+        run.state == RunState::done && checksum && (!readable || *checksum != checksum_of(run.job, run.key, result));
     if (run.state == RunState::done) run.result = std::move(result);
     if (run.state == RunState::failed) run.failure = std::move(failure);
     take(run);

@@ -47,7 +47,21 @@ std::string checksum_of(std::int64_t job, const RunKey& key, const Record& recor
   for (const std::string& part :
        {record.digest, std::string(word(record.verdict)), record.objections, record.lower_bounds})
     text += ';' + part;
+  if (const std::optional<std::string> targets = targets_text(record)) text += ';' + *targets;
   return hex_digits(fnv1a64(text));
+}
+
+std::optional<std::string> targets_text(const Record& record) {
+  return record.targets.empty() ? std::nullopt : std::optional(outcomes_json(record.targets).dump());
+}
+
+bool read_targets_text(const std::optional<std::string>& text, Record& record) try {
+  if (text) record.targets = read_outcomes(Json::parse(*text));
+  return true;
+} catch (const Json::exception&) {
+  return false;
+} catch (const IoError&) {
+  return false;
 }
 
 std::vector<std::string> Store::repair_rows() {

@@ -30,10 +30,11 @@ bool record_done(SQLite::Database& db, const Claim& claim, const Record& result,
   visit_numbers(result, [&](const char* key, const char*, auto) { numbers += key + std::string(" = ?, "); });
   SQLite::Statement update(
       db, "UPDATE runs SET state = 'done', " + numbers +
-              "digest = ?, verdict = ?, verdict_reasons = ?, lower_bounds = ?, checksum = ? WHERE " + is_current_claim);
+              "digest = ?, verdict = ?, verdict_reasons = ?, lower_bounds = ?, targets = ?, checksum = ? WHERE " +
+              is_current_claim);
   Binder values(update);
   visit_numbers(result, [&](const char*, const char*, auto value) { values << value; });
-  values << result.digest << result.verdict << result.objections << result.lower_bounds
+  values << result.digest << result.verdict << result.objections << result.lower_bounds << targets_text(result)
          << checksum_of(claim.study, claim.key, result) << claim;
   if (update.exec() != 1) return false;
   count_ended(db, claim, "done", result.verdict, now);

@@ -192,10 +192,17 @@ void check_choices(const Case& c, Faults& faults) {
     faults.add(
         "/rheology/shear_rate",
         "\"paper\" is the norm of [Z20] Eq. 7, with which mu(I) is not defined; material mu_i needs \"consistent\"");
+  for (std::size_t k = 0; k < c.model.materials.size(); ++k)
+    if (c.model.rheology.yield == Yield::regularized && c.model.materials[k].softening)
+      faults.add(material_pointer(c.model, k) + "/softening",
+                 "needs rheology.yield \"elastic\": the regularized law shears everywhere and would soften at rest");
   if (!c.field) return;
-  if (!c.field->mu && !c.field->mean)
+  const bool undrained = std::ranges::all_of(c.model.materials, &Material::undrained);
+  if (undrained)
+    faults.add("/random_field", "varies the friction angle, and every material is undrained, which has none");
+  if (!undrained && !c.field->mu && !c.field->mean)
     for (const Material& m : c.model.materials)
-      if (m.phi <= 0.0)
+      if (m.phi <= 0.0 && !m.undrained)
         faults.add("/random_field",
                    "needs log_mean or mean_tan_phi: material " + in_quotes(m.name) + " has no friction angle to vary");
   check_covariance(*c.field, faults);
@@ -246,6 +253,7 @@ std::vector<Fault> find_warnings(const Case& c) {
   warn_of_a_slide_in_the_air(model, warnings);
   warn_of_thin_front(model, warnings);
   if (c.field) warn_of_unused_keys(*c.field, warnings);
+  warn_of_unused_water(model, warnings);
   if (model.numerics.precision == Precision::full)
     warnings.push_back(
         {"/numerics/precision",

@@ -60,6 +60,9 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
   m.slide = std::move(slide.parts);
   m.materials = std::move(slide.materials);
   origins.outlines = std::move(slide.origins);
+  in.object("water",
+            "Ground water before the slide, for materials that state no r_u. Without this section they are dry.",
+            Absent::skip, [&](ObjectReader& section) { read_water(section, m.water, directory, origins); });
   in.object("rheology", "How the soil yields.", Absent::defaults,
             [&](ObjectReader& section) { read_rheology(section, m.rheology); });
   const Json* time = in.find("time");
@@ -72,6 +75,15 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
             [&](ObjectReader& section) { read_walls(section, m.walls, bed); });
   in.object("time", "When to stop and what to keep.", Absent::fault,
             [&](ObjectReader& section) { read_time(section, m.time); });
+  in.objects("targets", {0, 100},
+             {"Places that the slide may reach: observed points and stretches, and structures that stand in its way. "
+              "Results and studies state for each whether and when the slide arrives, how deep, how fast and with what "
+              "load.",
+              "user", "none"},
+             "One target. Give point_m, stretch_m or structure.",
+             [&](ObjectReader& target) { read_target(target, directory, origins.targets.emplace_back()); });
+  if (origins.targets.empty()) in.remove_record("targets");
+  for (const TargetInput& target : origins.targets) origins.note_file(target.outline);
   in.object(
       "random_field",
       "Lognormal random field of tan(phi). Give one correlation_length_m, or both of x and y, or scales of fluctuation "
@@ -104,11 +116,15 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
       if (!faults.none_under(p)) return false;
     return true;
   };
-  // A CSV fault stands at its file, not under /terrain or /slide: then bed or slide is empty.
   const bool shaped = !out.value.model.terrain.bed.empty() && !out.value.model.slide.empty();
+  const bool placed = shaped && free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/walls", "/targets"});
+  if (placed) add_targets(out.value.model, origins, faults);
+  // A CSV fault stands at its file, not under /terrain or /slide: then bed or slide is empty.
   if (shaped &&
       free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/max_particles", "/walls", "/particle_placement"}))
     check_geometry(out.value.model, origins, faults);
+  if (shaped && free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/water"}))
+    check_water(out.value.model, origins, faults);
   if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
   if (shaped && out.value.field && free_of_faults({"/terrain", "/slide", "/random_field"}))
     check_field(out.value, origins, faults);
@@ -136,7 +152,7 @@ std::string case_hash(const Json& resolved) {
   deciding.erase("description");
   if (const auto study = deciding.find("study"); study != deciding.end())
     for (const char* key : {"realizations", "seed", "noise_floor_replicates", "stop_when_ci_half_width_below_m",
-                            "max_failed_share", "histogram_edges_m"})
+                            "max_failed_share", "histogram_edges_m", "hazard_classes"})
       study->erase(key);
   return hex_digits(fnv1a64(deciding.dump()));
 }
@@ -155,11 +171,14 @@ Plan make_plan(const LoadedCase& loaded, std::uint64_t seed, const std::string& 
     throw ConfigError(
         "/study/stop_when_ci_half_width_below_m",
         "a Latin hypercube is one sample of a fixed size and cannot stop early; use monte_carlo or remove this");
+  std::vector<TargetName> targets;
+  for (const Target& target : c.model.targets) targets.push_back(target.of);
   return {.title = c.title,
           .of = {.hash = loaded.hash, .hash_without_end = loaded.hash_without_end, .end = c.model.time.end},
           .version = version,
           .seed = seed,
-          .study = c.study};
+          .study = c.study,
+          .targets = std::move(targets)};
 }
 
 }  // namespace talus

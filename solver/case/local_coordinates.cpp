@@ -43,10 +43,21 @@ void use_local_coordinates(Case& c) {
   for (std::optional<double>* top : {&m.terrain.left_top, &m.terrain.right_top})
     if (*top) *top = local(**top, origin.y);
   m.terrain.run_out.from = local(m.terrain.run_out.from, origin.x);
-  for (Boundary& boundary : m.boundaries) move(boundary.line.vertices, origin);
+  for (Boundary& boundary : m.boundaries) {
+    move(boundary.line.vertices, origin);
+    for (WallStretch& stretch : boundary.stretches)
+      for (double* end : {&stretch.x1, &stretch.x2}) *end = local(*end, origin.x);
+  }
+  move(m.water.line, origin);
   for (SlidePart& part : m.slide) move(part.outline, origin);
   if (c.field)
     for (FieldDatum& datum : c.field->data) datum.x = {local(datum.x.x, origin.x), local(datum.x.y, origin.y)};
+  for (Target& target : m.targets) {
+    target.from = local(target.from, origin.x);
+    target.to = local(target.to, origin.x);
+    if (target.structure)
+      target.structure->foot = {local(target.structure->foot.x, origin.x), local(target.structure->foot.y, origin.y)};
+  }
   if (c.field && c.field->domain) {
     Box& domain = *c.field->domain;
     domain = {{local(domain.lo.x, origin.x), local(domain.lo.y, origin.y)},

@@ -1,4 +1,4 @@
-// The keys of material, rheology, numerics, walls and time. Defaults are those of the structs.
+// The keys of material, rheology, numerics and time. Defaults are those of the structs.
 
 #include <cmath>
 #include <cstdint>
@@ -11,7 +11,6 @@
 namespace talus {
 namespace {
 
-constexpr Quantity friction_angle_range{"deg", 0.0, 89.0};  // tan(89 deg) is 57, and grows without bound beyond
 constexpr Quantity duration{"s", 0.0, 1e7, true};
 constexpr double laboratory_gravity = 9.81;  ///< with which laboratories state unit weights [m/s2]
 constexpr std::size_t most_snapshots = 10'000;
@@ -29,9 +28,6 @@ constexpr Names<InitialPressure> initial_pressures[] = {{"hydrostatic", InitialP
                                                         {"stress_free", InitialPressure::stress_free}};
 constexpr Names<Precision> precisions[] = {{"single", Precision::single}, {"double", Precision::full}};
 constexpr Names<Integrator> integrators[] = {{"rk2", Integrator::rk2}, {"leapfrog", Integrator::leapfrog}};
-constexpr Names<WallContact> contacts[] = {{"always", WallContact::always}, {"approaching", WallContact::approaching}};
-constexpr Names<WallSlip> slips[] = {
-    {"no_slip", WallSlip::no_slip}, {"friction", WallSlip::friction}, {"free_slip", WallSlip::free_slip}};
 
 /// Times 0 < interval < 2 interval ... < end, where an end that differs from a multiple by rounding counts as that
 /// multiple.
@@ -137,15 +133,9 @@ void read_material(ObjectReader& in, MaterialInput& m) {
                        {"Unit weight of the soil in place, instead of its density: divided by 9.81 m/s2, whatever "
                         "gravity_m_s2 is.",
                         "laboratory", "none"}});
-  in.required_number("friction_angle_deg", m.friction_angle_deg, friction_angle_range,
-                     {"Friction angle phi of the yield stress c + p tan(phi); the median if the random field has no "
-                      "log_mean.",
-                      "laboratory; [Z20] Eq. 5"});
-  m.phi = radians(m.friction_angle_deg);
-  in.number_in_either("cohesion_Pa", m.c, {"Pa", 0.0, 1e9},
-                      {"Cohesion c of the yield stress.", "laboratory; [Z20] Eq. 5"}, false,
-                      {"cohesion_kPa", {"kPa", 0.0, 1e6}, 1000.0, {"The same in kPa.", "laboratory", "none"}});
+  read_strength(in, m);
   read_rate_dependence(in, m);
+  read_softening(in, m);
 }
 
 void read_rheology(ObjectReader& in, Rheology& r) {
@@ -209,36 +199,6 @@ void read_numerics(ObjectReader& in, Numerics& n, Yield yield, bool fixed_step) 
   in.limit_by_choice("cfl", n.cfl, "integrator",
                      {{"rk2", stable_cfl(Integrator::rk2)}, {"leapfrog", stable_cfl(Integrator::leapfrog)}},
                      "measured on slopes, the deposit begins to shake a little above");
-}
-
-void read_walls(ObjectReader& in, Walls& w, Boundary& bed) {
-  in.choice(
-      "contact", w.contact, contacts,
-      {"always: a wall acts on every particle near it; approaching: only on particles that come nearer, which keeps "
-       "a pile chattering.",
-       "[Z20] section 2.1 for approaching"});
-  in.choice("slip", bed.slip, slips,
-            {"no_slip: velocity vanishes at the wall; friction: soil along the wall yields at the smaller "
-             "friction angle and the smaller cohesion of wall and soil; free_slip: no shear.",
-             "Takeda 1994, Morris 1997; Desai 1984 for friction"});
-  std::optional<double> angle;
-  in.optional_number(
-      "friction_angle_deg", angle, friction_angle_range,
-      {"Friction angle of the wall; needed by slip friction, unused otherwise.", "interface shear test", "none"});
-  in.optional_number(
-      "cohesion_Pa", bed.c, {"Pa", 0.0, 1e9},
-      {"Cohesion of the wall with slip friction, unused otherwise; without it the soil's cohesion acts on "
-       "the wall.",
-       "interface shear test", "the soil's"});
-  if (bed.slip == WallSlip::friction && in.find("friction_angle_deg") == nullptr)
-    in.fault("friction_angle_deg",
-             "is missing: slip \"friction\" needs the wall's angle; " + friction_angle_range.describe());
-  bed.phi = radians(angle.value_or(0.0));
-  in.number("max_velocity_ratio", w.b_max, {"", 1.0, 100.0},
-            {"Largest ratio of the mirrored velocity of a wall particle, b_max.", "Morris 1997"});
-  in.integer("layers", w.layers, {"", 1.0, 20.0},
-             {"Layers of wall particles; they must fill the kernel's support: at least 2 smoothing_ratio - 1/2.",
-              "[Z20] section 3"});
 }
 
 void read_time(ObjectReader& in, TimeControl& t) {

@@ -222,6 +222,23 @@ void read_field(ObjectReader& in, FieldSpec& spec, double dx, const std::filesys
   if (trend == 0.0) in.remove_record("trend_deg_per_m");
 }
 
+namespace {
+
+void read_hazard_class(ObjectReader& in, HazardClass& one) {
+  const std::size_t before = in.faults().size();
+  in.string("name", one.name, {1, 40}, {"Name of the class.", "hazard map"});
+  in.optional_number("depth_m", one.depth, {"m", 0.0, 1e4, true},
+                     {"Least peak depth of the flow.", "hazard map", "any"});
+  in.optional_number("speed_m_s", one.speed, {"m/s", 0.0, 1e4, true},
+                     {"Least peak depth-averaged speed.", "hazard map", "any"});
+  in.optional_number("dynamic_pressure_Pa", one.dynamic_pressure, {"Pa", 0.0, 1e12, true},
+                     {"Least peak dynamic pressure, density times speed squared.", "hazard map", "any"});
+  if (!one.depth && !one.speed && !one.dynamic_pressure && in.faults().size() == before)
+    in.fault("", "has no threshold; give depth_m, speed_m_s or dynamic_pressure_Pa");
+}
+
+}  // namespace
+
 void read_study(ObjectReader& in, StudySpec& s) {
   in.integer("realizations", s.realizations, {"", 1.0, 1e9}, {"Realizations planned.", "[Z20] section 4 uses 1000"});
   in.optional_integer("seed", s.seed, {"", 0.0, static_cast<double>(max_exact_integer)},
@@ -242,6 +259,12 @@ void read_study(ObjectReader& in, StudySpec& s) {
   in.numbers("histogram_edges_m", s.histogram_edges, coordinate, {0, 10'000},
              {"Edges of the histogram, increasing; none: chosen from the data at round numbers.", "user", "",
               ">= -1e6 and <= 1e6, none or at least two"});
+  in.objects("hazard_classes", {0, 20},
+             {"Classes of hazard at the targets, from the weakest to the strongest. A run falls into the last class "
+              "all of whose thresholds the flow at the target reaches, into none if it does not arrive.",
+              "hazard map", "none"},
+             "One class.", [&](ObjectReader& one) { read_hazard_class(one, s.hazard_classes.emplace_back()); });
+  if (s.hazard_classes.empty()) in.remove_record("hazard_classes");
   if (s.histogram_edges.size() == 1) in.fault("histogram_edges_m", "has one edge; give at least two, or none");
   for (std::size_t k = 1; k < s.histogram_edges.size(); ++k)
     if (s.histogram_edges[k] <= s.histogram_edges[k - 1])

@@ -151,6 +151,15 @@ void ObjectReader::number_in_either(std::string_view key, double& value, const Q
   record(key, value);
 }
 
+void ObjectReader::optional_number_in_either(std::string_view key, std::optional<double>& value, const Quantity& q,
+                                             const KeyText& text, const OtherUnit& other) {
+  const auto given = read_number(key, q, text), converted = read_number(other.key, other.q, other.text);
+  exclude(other.key, key);
+  if (given) value = given;
+  if (!given && converted) value = *converted * other.factor;
+  if (given || converted) record(key, *value);
+}
+
 void ObjectReader::optional_number(std::string_view key, std::optional<double>& value, const Quantity& q,
                                    const KeyText& text) {
   if (const auto read = read_number(key, q, text)) record(key, value.emplace(*read));

@@ -84,6 +84,9 @@ class ObjectReader {
   /// `required` the value on entry is the default.
   void number_in_either(std::string_view key, double& value, const Quantity& q, const KeyText& text, bool required,
                         const OtherUnit& other);
+  /// The same without a default: stays unset when absent; then nothing is recorded.
+  void optional_number_in_either(std::string_view key, std::optional<double>& value, const Quantity& q,
+                                 const KeyText& text, const OtherUnit& other);
   template <std::integral T>
   void integer(std::string_view key, T& value, const Quantity& q, const KeyText& text) {
     if (const auto read = read_number(key, q, text, "integer", value)) value = static_cast<T>(*read);
@@ -142,6 +145,8 @@ class ObjectReader {
   void one_form(std::initializer_list<Form> forms);
   /// From here on defaults are shown as these words, and no key is required.
   void describe_defaults_as(std::string_view words) { default_words_ = words; }
+  /// Whether keys without a default are required here.
+  bool requires_keys() const { return default_words_.empty(); }
 
   /// Notes a fault at this object (empty key) or at one of its keys.
   void fault(std::string_view key, std::string message);

@@ -11,11 +11,24 @@
 
 namespace talus {
 
+/// A target as it is written; the ground decides where it stands.
+struct TargetInput {
+  std::string pointer;  ///< "/targets/0"
+  std::string name;
+  TargetKind kind = TargetKind::point;
+  std::vector<double> x;            ///< point_m, stretch_m or structure/x_m
+  std::optional<double> height;     ///< of a structure with x_m [m]
+  Vertices outline;                 ///< of a structure; empty: given by x_m and height_m
+  std::optional<double> averaging;  ///< [s]
+};
+
 /// Where the vertices of bed and outlines are written.
 struct SourceLocations {
   Vertices bed;
   std::vector<Vertices> outlines;  ///< of each slide part
   FieldData field_data;            ///< of the random field
+  Vertices water;                  ///< of the phreatic line
+  std::vector<TargetInput> targets;
   std::vector<std::string> files;  ///< CSV files with the form in which they were read
 
   void note_file(const Vertices& v) {
@@ -35,8 +48,21 @@ void read_lattice(ObjectReader& in, Model& m);
 /// A material and its friction angles as written, so that a layer which inherits an angle repeats it exactly.
 struct MaterialInput : Material {
   double friction_angle_deg = 0.0;
+  double gradient_kPa_m = 0.0;                 ///< of the undrained strength
+  double residual_angle_deg = 0.0;             ///< of softening, where it states one
   double high_rate_friction_angle_deg = 90.0;  ///< of mu_i
 };
+
+inline constexpr Quantity friction_angle_range{"deg", 0.0, 89.0};  // tan(89 deg) is 57, and grows without bound beyond
+
+// read_strength.cpp
+/// Friction angle and cohesion, or an undrained strength; r_u. A layer that states one kind of strength drops what it
+/// would have inherited of the other.
+void read_strength(ObjectReader& in, MaterialInput& m);
+/// Residual strength and how far the soil must shear until it is reached. @param m  its strength is read already
+void read_softening(ObjectReader& in, MaterialInput& m);
+/// The phreatic line.
+void read_water(ObjectReader& in, Water& w, const std::filesystem::path& directory, SourceLocations& origins);
 
 // read_physics.cpp
 void read_material(ObjectReader& in, MaterialInput& m);
@@ -61,6 +87,16 @@ SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, 
 void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& directory, const SlideInput& slide,
                   double dx, SourceLocations& origins);
 
+// read_targets.cpp
+void read_target(ObjectReader& in, const std::filesystem::path& directory, TargetInput& target);
+
+// add_targets.cpp
+/// Puts the targets on the ground: Model::targets, and a boundary for each structure, with the walls' slip and
+/// strength. Faults: a name twice; a place off the terrain, in the ground or on the slide; a structure without extent,
+/// thinner than the particles can see, in the air or over another one.
+/// @param model  terrain, slide, spacing and walls without faults
+void add_targets(Model& model, const SourceLocations& origins, Faults& faults);
+
 // read_statistics.cpp
 /// @param dx  particle spacing [m]; the default of cell_average depends on it
 /// @param directory  where CSV files lie
@@ -83,6 +119,12 @@ void check_choices(const Case& c, Faults& faults);
 
 /// Data in the rectangle of the random field, a median friction angle that the trend keeps in range.
 void check_field(const Case& c, const SourceLocations& origins, Faults& faults);
+
+// check_water.cpp
+/// A phreatic line that covers the slide and does not lie above the ground.
+void check_water(const Model& model, const SourceLocations& origins, Faults& faults);
+/// A phreatic line that no material feels.
+void warn_of_unused_water(const Model& model, std::vector<Fault>& warnings);
 
 // check_demand.cpp: numbers within their ranges that together ask for more than any run can do
 /// At most 1e9 time steps. @param model  without faults

@@ -46,6 +46,35 @@ const Usual friction_angle{"friction_angle_deg",
                            "0, or 2 to 60 deg",
                            {{0.0, 2.0, "a value in radians, or tan(phi), is converted to degrees"}}};
 const Usual viscosity{"viscosity_Pa_s", "Pa s", 0.0, 1e6, "up to 1e6 Pa s", {}};
+const Usual undrained_strength{"undrained_strength_Pa",
+                               "Pa",
+                               200.0,
+                               2e6,
+                               "0, or 200 Pa to 2 MPa",
+                               {{0.0, 200.0, "a strength in kPa is given as undrained_strength_kPa"}}};
+const Usual strength_gradient{"undrained_strength_gradient_kPa_m",
+                              "kPa/m",
+                              0.1,
+                              20.0,
+                              "0, or 0.1 to 20 kPa/m",
+                              {{100.0, 1000.0, "a gradient in Pa/m is divided by 1000"}}};
+const Usual pore_pressure_ratio_usual{
+    "r_u", "", 0.02, 0.7, "0, or 0.02 to 0.7", {{0.7, 1.0, "at 1 the soil is liquefied; a ratio, not a percentage"}}};
+const Usual softening_displacement{
+    "displacement_m", "m", 1e-3, 5.0, "1 mm to 5 m", {{5.0, 1000.0, "a displacement in mm is divided by 1000"}}};
+const Usual residual_cohesion{"residual_cohesion_Pa",
+                              "Pa",
+                              20.0,
+                              5e6,
+                              "0, or 20 Pa to 5 MPa",
+                              {{0.0, 20.0, "a cohesion in kPa is given as residual_cohesion_kPa"}}};
+const Usual residual_strength{"residual_undrained_strength_Pa",
+                              "Pa",
+                              20.0,
+                              2e6,
+                              "0, or 20 Pa to 2 MPa",
+                              {{0.0, 20.0, "a strength in kPa is given as residual_undrained_strength_kPa"}}};
+const Usual turbulence{"voellmy_xi_m_s2", "m/s2", 20.0, 1e4, "20 to 10000 m/s2", {}};
 const Usual grain_diameter{"grain_diameter_m",
                            "m",
                            1e-6,
@@ -62,13 +91,38 @@ const Usual shear_modulus{"shear_modulus_Pa",
 
 void warn(const Usual& usual, double value, const std::string& section, std::vector<Fault>& warnings) {
   if (value == 0.0 || (value >= usual.lo && value <= usual.hi)) return;
-  std::string message = to_text(value) + " " + usual.unit + " is unusual for soil (" + usual.range + ")";
+  const std::string unit = *usual.unit == '\0' ? "" : std::string(" ") + usual.unit;
+  std::string message = to_text(value) + unit + " is unusual for soil (" + usual.range + ")";
   for (const Slip& slip : usual.slips)
     if (value >= slip.lo && value <= slip.hi) {
       message += "; " + std::string(slip.advice);
       break;
     }
   warnings.push_back({section + "/" + usual.key, message});
+}
+
+void warn_of_softening(const Softening& s, bool undrained, const std::string& section, std::vector<Fault>& warnings) {
+  if (s.phi) {
+    Usual angle = friction_angle;
+    angle.key = "residual_friction_angle_deg";
+    warn(angle, degrees(*s.phi), section, warnings);
+  }
+  if (s.c) warn(undrained ? residual_strength : residual_cohesion, *s.c, section, warnings);
+  if (s.displacement) warn(softening_displacement, *s.displacement, section, warnings);
+  if (s.shear_strain)
+    warnings.push_back({section + "/plastic_shear_strain",
+                        "makes the run-out depend on the particle spacing; displacement_m does not"});
+}
+
+void warn_of_walls(const Boundary& b, std::vector<Fault>& warnings) {
+  if (b.c) warn(wall_cohesion, *b.c, "/walls", warnings);
+  if (b.xi) warn(turbulence, *b.xi, "/walls", warnings);
+  for (std::size_t k = 0; k < b.stretches.size(); ++k) {
+    const std::string section = "/walls/stretches/" + std::to_string(k);
+    warn(friction_angle, degrees(b.stretches[k].phi), section, warnings);
+    if (b.stretches[k].c) warn(cohesion, *b.stretches[k].c, section, warnings);
+    if (b.stretches[k].xi) warn(turbulence, *b.stretches[k].xi, section, warnings);
+  }
 }
 
 }  // namespace
@@ -85,15 +139,18 @@ void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings) {
     const std::string section = material_pointer(model, k);
     if (k == 0 || m.rho0 != base.rho0) warn(density, m.rho0, section, warnings);
     if (k == 0 || m.phi != base.phi) warn(friction_angle, degrees(m.phi), section, warnings);
-    if (k == 0 || m.c != base.c) warn(cohesion, m.c, section, warnings);
+    if (k == 0 || m.c != base.c) warn(m.undrained ? undrained_strength : cohesion, m.c, section, warnings);
+    if (k == 0 || m.c_gradient != base.c_gradient) warn(strength_gradient, m.c_gradient / 1000.0, section, warnings);
+    if (m.r_u && (k == 0 || m.r_u != base.r_u)) warn(pore_pressure_ratio_usual, *m.r_u, section, warnings);
+    if (m.softening && (k == 0 || m.softening != base.softening))
+      warn_of_softening(*m.softening, m.undrained, section + "/softening", warnings);
     if (k == 0 || m.eta != base.eta) warn(viscosity, m.eta, section, warnings);
     if (m.mu_i && (k == 0 || m.mu_i != base.mu_i)) {
       warn(grain_diameter, m.mu_i->d, section + "/mu_i", warnings);
       warn(grain_density, m.mu_i->rho_s, section + "/mu_i", warnings);
     }
   }
-  for (const Boundary& b : model.boundaries)
-    if (b.c) warn(wall_cohesion, *b.c, "/walls", warnings);
+  for (const Boundary& b : model.boundaries) warn_of_walls(b, warnings);
   if (model.rheology.G) warn(shear_modulus, *model.rheology.G, "/rheology", warnings);
 }
 

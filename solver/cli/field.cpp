@@ -10,6 +10,7 @@
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "cli/xi_file.hpp"
+#include "figures/ground.hpp"
 #include "figures/profile.hpp"
 #include "io/vtkhdf.hpp"
 #include "math/angle.hpp"
@@ -123,7 +124,7 @@ void draw(const FieldOnParticles& field, const Case& problem, const figures::Sta
   if (!field.spread || realization)
     shots.push_back({&frame, figures::Colour::friction_angle, field.spread ? "Realization" : "Before the slide"});
   figures::plot_profiles(shots, problem.model.terrain, problem.model.dx, path, stamps,
-                         {.mark_front = false, .marks = marks_of(problem.field)});
+                         {.mark_front = false, .marks = marks_of(problem.field), .structures = figures::structures_of(problem.model)});
 }
 
 void write(const FieldOnParticles& field, const Case& problem, const figures::Stamps& stamps, const fs::path& path,

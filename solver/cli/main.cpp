@@ -65,8 +65,8 @@ int run_program(int argc, char** argv) {
   if (const char* simd = std::getenv("TALUS_SIMD"); simd && *simd && !talus::limit_pair_loops(simd))
     return report(Exit::usage, "TALUS_SIMD must be AVX2 or SSE4, or unset for the best that the processor supports");
   Action action;
-  for (const auto add : {add_validate, add_field, add_run, add_profile, add_study, add_stats, add_plot, add_schema,
-                         add_bench, add_remote, add_array_task})
+  for (const auto add : {add_validate, add_field, add_run, add_profile, add_study, add_stats, add_compare, add_plot,
+                         add_schema, add_bench, add_remote, add_array_task})
     add(app, action);
   format_help(app);
   const std::vector<std::string> arguments = normalized({argv + 1, argv + argc});

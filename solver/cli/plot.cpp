@@ -11,6 +11,7 @@
 #include "cli/verbs.hpp"
 #include "figures/case_sheet.hpp"
 #include "figures/figures.hpp"
+#include "figures/ground.hpp"
 #include "figures/profile.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
@@ -60,7 +61,8 @@ Exit profile(const ProfileOptions& options) {
     const figures::Snapshot shot{&frame, figures::Colour::displacement, {}};
     figures::plot_profiles({&shot, 1}, loaded.value.model.terrain, loaded.value.model.dx, options.out,
                            {from.case_title, "Displacement at the end", source + "  ·  case " + from.case_hash,
-                            verdict_lines(result.quality)});
+                            verdict_lines(result.quality)},
+                           {.structures = figures::structures_of(loaded.value.model)});
   }
   std::cout << options.out.string() << "\n";
   return Exit::ok;

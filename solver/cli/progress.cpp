@@ -129,6 +129,12 @@ std::string summary_table(const Json& study) {
                interval(q.at("mean_ci95")).c_str(), number(q.at("stdev")).c_str(), interval(q.at("stdev_ci95")).c_str(),
                number(q.at("noise_floor_stdev")).c_str(), of(median).c_str(), of(high).c_str());
   }
+  for (const Json& target : study.value("targets", Json::array())) {
+    const Json& of = target.at("reached");
+    text += format("%s reached: %.2f, 95 %% %.2f to %.2f, %lld of %lld\n", target.at("name").get<std::string>().c_str(),
+                   of.at("p").get<double>(), of.at("lo").get<double>(), of.at("hi").get<double>(),
+                   of.at("k").get<long long>(), of.at("n").get<long long>());
+  }
   const Json& runout = study.at("quantities").at(measure_table[0].key);
   if (const auto censored = runout.find("censored"); censored != runout.end() && censored->is_object())
     text +=

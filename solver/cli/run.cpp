@@ -78,6 +78,18 @@ std::string remark_on(const RunResult& r, const Measure& measure) {
   return "   where the soil is " + rounded(r.front_thickness) + " m thick";
 }
 
+/// What the slide did to a target, in one line.
+std::string target_text(const TargetOutcome& target) {
+  if (!target.arrives) return target.open ? "not reached yet, the soil still moves" : "not reached";
+  std::string text = "reached after " + rounded(target.arrival) + " s: depth " + rounded(target.peak_depth) +
+                     " m, speed " + rounded(target.peak_speed) + " m/s, dynamic pressure " +
+                     rounded(1e-3 * target.peak_dynamic_pressure) + " kPa";
+  if (target.of.kind == TargetKind::structure)
+    text += ", force " + rounded(1e-3 * target.peak_horizontal_force) + " kN/m, overturning moment " +
+            rounded(1e-3 * target.peak_overturning_moment) + " kN m/m";
+  return text + (target.open ? "; the soil still moves there" : "");
+}
+
 void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t seed) {
   std::fputs(verdict_lines(r.quality).c_str(), stdout);
   std::printf("distances from x = %.10g m to the %s\n", axis.from, axis.to == SlidesTo::right ? "right" : "left");
@@ -85,6 +97,8 @@ void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t see
     std::printf("%-26s%10s %s%s\n", ((measure->front ? "front, " : "") + std::string(measure->label)).c_str(),
                 value_text(r, *measure).c_str(), measure->unit, remark_on(r, *measure).c_str());
   for (const std::string& note : r.notes) std::printf("note: %s\n", note.c_str());
+  for (const TargetOutcome& target : r.targets)
+    std::printf("%-26s%s\n", target.of.name.c_str(), target_text(target).c_str());
   std::printf("time reached              %10.3f s   in %lld steps%s\n", r.time, static_cast<long long>(r.steps),
               r.at_rest ? ", at rest" : "");
   if (const std::optional<double> share = r.energy.numerical_share())

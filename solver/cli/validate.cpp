@@ -17,6 +17,7 @@
 #include "run/dissipation.hpp"
 #include "run/realization.hpp"
 #include "run/warnings.hpp"
+#include "simulation/pore_pressure.hpp"
 #include "simulation/simulation.hpp"
 #include "support/json.hpp"
 #include "support/run_memory.hpp"
@@ -28,6 +29,7 @@ struct ValidateOptions {
   std::filesystem::path case_file;
   std::vector<std::string> overrides;
   bool json = false;
+  bool soils = false;
 };
 
 /// What a run of the case takes.
@@ -39,6 +41,7 @@ struct Demand {
   double memory = 0.0;  ///< [bytes]
   FlowConstants flow;
   std::optional<FieldSummary> field;
+  std::optional<PorePressureSummary> water;
   std::vector<Fault> warnings;
 };
 
@@ -56,6 +59,7 @@ Demand measure(const Case& c) {
     const RandomField field = make_field(c.model, *c.field);
     d.field = field_summary(*c.field, field);
   }
+  if (has_pore_pressure(c.model)) d.water = summary_of(pore_pressure_ratios(c.model, plan.soil));
   d.warnings = warnings_before_run(c, plan, d.field.value_or(FieldSummary{}));
   return d;
 }
@@ -138,6 +142,23 @@ void print_proposals(const Model& model) {
   }
 }
 
+Json strengths_json() {
+  Json list = Json::array();
+  for (const StrengthValue& value : strength_values)
+    list.push_back(
+        {{"soil", value.soil}, {"key", value.key}, {"range", {value.low, value.high}}, {"source", value.source}});
+  return list;
+}
+
+void print_strengths() {
+  std::printf("strength           values by soil type (key of material or of its softening, range):\n");
+  for (const StrengthValue& value : strength_values) {
+    std::printf("  %-60s %s %g", value.soil, value.key, value.low);
+    if (value.low < value.high) std::printf(" to %g", value.high);
+    std::printf("\n      %s\n", value.source);
+  }
+}
+
 /// The numerical constants that have defaults in words.
 Json numerics_json(const FlowConstants& flow) {
   Json moduli = Json::array();
@@ -163,7 +184,11 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
   if (d.field)
     out["field"] = {
         {"terms", d.field->terms}, {"captured_variance", d.field->captured_variance}, {"cov_tan_phi", d.field->cov}};
+  if (d.water)
+    out["water"] = {
+        {"wet_particles", d.water->wet}, {"liquefied_particles", d.water->liquefied}, {"mean_ratio", d.water->mean}};
   if (lacks_rate_dependence(model)) out["rate_dependence_by_soil"] = proposals_json(model);
+  out["strength_by_soil"] = strengths_json();
   out["warnings"] = to_json(loaded.warnings);
   return out;
 }
@@ -207,6 +232,11 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
   if (d.field)
     std::printf("captured variance  %.2f %% with %lld terms; coefficient of variation of tan(phi) %.3g\n",
                 100.0 * d.field->captured_variance, static_cast<long long>(d.field->terms), d.field->cov);
+  if (d.water)
+    std::printf(
+        "water              %lld of %zu particles, pore pressure over normal stress %.2g on average; %lld without "
+        "effective stress\n",
+        static_cast<long long>(d.water->wet), d.soil, d.water->mean, static_cast<long long>(d.water->liquefied));
   std::printf("case hash          %s\n", loaded.hash.c_str());
   if (lacks_rate_dependence(loaded.value.model)) print_proposals(loaded.value.model);
   print_warnings(loaded.warnings);
@@ -217,6 +247,7 @@ Exit validate(const ValidateOptions& options) try {
   Demand demand = measure(loaded.value);
   std::ranges::move(demand.warnings, std::back_inserter(loaded.warnings));
   options.json ? print_json(to_json(loaded, demand)) : print_text(loaded, demand);
+  if (options.soils && !options.json) print_strengths();
   return Exit::ok;
 } catch (const ConfigError& e) {
   if (!options.json) throw;
@@ -234,6 +265,9 @@ void add_validate(CLI::App& app, Action& action) {
   add_case(*verb, options->case_file);
   add_overrides(*verb, options->overrides);
   verb->add_flag("--json", options->json, "Print the report as JSON");
+  verb->add_flag(
+      "--soils", options->soils,
+      "Also print values of pore pressure, undrained and residual strength by soil type, with their sources");
   set_footer(*verb, {exit_text::bad_case, exit_text::io},
              {"validate slope.json", "validate slope.json --set particle_spacing_m=0.2"});
   verb->callback([&action, options] { action = [options] { return validate(*options); }; });

@@ -20,6 +20,7 @@ void add_run(CLI::App& app, Action& action);
 void add_field(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action);
 void add_stats(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
 void add_plot(CLI::App& app, Action& action);
 void add_schema(CLI::App& app, Action& action);
 void add_profile(CLI::App& app, Action& action);

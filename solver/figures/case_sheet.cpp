@@ -18,6 +18,8 @@ Box view_of(const Model& model, const Polyline& fitted) {
   Box box = bounding_box(model.slide);
   for (const std::vector<Vec2>* line : {&model.terrain.bed, &fitted.vertices})
     for (const Vec2& v : *line) box.include(v);
+  for (const Polyline& structure : structures_of(model))
+    for (const Vec2& v : structure.vertices) box.include({v.x, std::max(v.y, box.lo.y)});
   const double margin = 0.03 * box.width() + model.dx;
   const double height = std::max(box.height(), 0.12 * box.width());
   return {{box.lo.x - margin, box.lo.y - 0.1 * height - 0.012 * box.width()},
@@ -91,6 +93,7 @@ Sheet case_sheet(const LoadedCase& loaded, const GroundReport& report, const Sta
   CaseDrawing drawing{sheet, {}};
   const bool changed = !(given == fitted);
   const GroundElements bed = ground_elements(sheet.script, fitted, view, layout.metre, "", changed ? 1.2 : 2.2);
+  for (const std::string& element : structure_elements(sheet.script, structures_of(model), "")) drawing.add(element);
   for (const std::string& element : bed.behind) drawing.add(element);
   draw_slide(drawing, model);
   if (walls) draw_walls(drawing, model);

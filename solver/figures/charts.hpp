@@ -6,6 +6,7 @@
 #include "figures/sheet.hpp"
 #include "figures/study_files.hpp"
 #include "particles/geometry_input.hpp"
+#include "simulation/target.hpp"
 
 namespace talus::figures {
 
@@ -19,8 +20,12 @@ Sheet exceedance_sheet(const StudyFiles& study);
 /// Mean run-out distance of the farthest particle over the first n realizations done and its 95 % interval against n.
 Sheet running_mean_sheet(const StudyFiles& study);
 
-/// Probability that the farthest particle reaches x, above the terrain with the slide before its release.
-Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std::span<const SlidePart> slide);
+/// Probability that the farthest particle reaches x, a step at the front of each run, above the terrain with the slide
+/// before its release; ahead of the slide's toe only, and beyond the last front, where it is 0 with its upper bound.
+/// Targets are drawn in, each with the probability that it is reached.
+/// @param structures  outlines, as structures_of() gives them
+Sheet hit_probability_sheet(const StudyFiles& study, const Terrain& terrain, std::span<const SlidePart> slide,
+                            std::span<const Target> targets = {}, const std::vector<Polyline>& structures = {});
 
 /// Run-out distance of the farthest particle against the spatial mean of the friction angle, one point a realization.
 Sheet friction_angle_sheet(const StudyFiles& study);

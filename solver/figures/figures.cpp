@@ -10,6 +10,7 @@
 #include "case/load.hpp"
 #include "figures/charts.hpp"
 #include "figures/energy.hpp"
+#include "figures/ground.hpp"
 #include "figures/profile.hpp"
 #include "io/history.hpp"
 #include "io/result_json.hpp"
@@ -38,7 +39,8 @@ class Album {
     for (const char* ending : {".svg", ".png"}) sheet.save(drawn_.emplace_back(directory_ / (name + ending)));
   }
   void add(const std::string& name, std::span<const Snapshot> snapshots, const Model& model, const Stamps& stamps,
-           const ProfileOptions& options = {}) {
+           ProfileOptions options = {}) {
+    options.structures = structures_of(model);
     for (const char* ending : {".svg", ".png"}) {
       plot_profiles(snapshots, model.terrain, model.dx, drawn_.emplace_back(directory_ / (name + ending)), stamps,
                     options);
@@ -146,7 +148,8 @@ std::vector<fs::path> plot_study(const fs::path& directory) {
   album.add("spread", spread_sheet(study));
   if (!fs::exists(directory / "case.resolved.json")) return album.drawn();
   const Model model = resolved_case(directory).value.model;
-  album.add("hit_probability", hit_probability_sheet(study, model.terrain, model.slide));
+  album.add("hit_probability",
+            hit_probability_sheet(study, model.terrain, model.slide, model.targets, structures_of(model)));
   for (const std::string which : {"first", "worst"}) {
     const fs::path file = directory / "profiles" / (which + ".vtkhdf");
     if (!fs::exists(file)) continue;

@@ -69,6 +69,25 @@ GroundElements ground_elements(Script& script, const Polyline& bed, const Box& v
   return elements;
 }
 
+std::vector<Polyline> structures_of(const Model& model) {
+  std::vector<Polyline> structures;
+  for (std::size_t b = 1; b < model.boundaries.size(); ++b) structures.push_back(model.boundaries[b].line);
+  return structures;
+}
+
+std::vector<std::string> structure_elements(Script& script, const std::vector<Polyline>& structures,
+                                            const std::string& tag) {
+  std::vector<std::string> elements;
+  for (std::size_t k = 0; k < structures.size(); ++k) {
+    const std::string name = "structure" + std::to_string(k) + tag;
+    script.data(name, structures[k].vertices);
+    elements.push_back("$" + name +
+                       " using 1:2 with filledcurves closed fillcolor rgb '#8A8A8A' fillstyle solid border rgb '" +
+                       ink + "'");
+  }
+  return elements;
+}
+
 std::string slide_element(Script& script, const std::string& name, const std::vector<Vec2>& outline,
                           const char* colour) {
   script.data(name, outline);

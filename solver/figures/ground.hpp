@@ -5,6 +5,7 @@
 
 #include "figures/sheet.hpp"
 #include "particles/geometry_input.hpp"
+#include "simulation/model.hpp"
 
 namespace talus::figures {
 
@@ -36,6 +37,12 @@ struct GroundElements {
 /// @param width  of the line [px]
 GroundElements ground_elements(Script& script, const Polyline& bed, const Box& view, double metre,
                                const std::string& tag, double width = 2.2);
+
+/// The outlines of the structures of a model: its boundaries but the ground.
+std::vector<Polyline> structures_of(const Model& model);
+/// Plot elements of structures, to be plotted before the ground, which hides their foundations.
+std::vector<std::string> structure_elements(Script& script, const std::vector<Polyline>& structures,
+                                            const std::string& tag);
 
 inline constexpr const char* slide_colour = "#C9B79C";
 /// Plot element of one outline of the slide before failure, whose data get `name`.

@@ -111,7 +111,8 @@ void panel_plot(const Drawing& d, std::size_t k, const Snapshot& shot, ColourRan
   const std::string caption = shot.caption.empty() ? "t = " + fixed(shot.frame->time, 2) + " s" : shot.caption;
   d.sheet.text(panel.left, panel.top - 12, caption, {.points = 11, .bold = true});
   const GroundElements bed = ground_elements(d.sheet.script, ground_line(d.terrain), d.view, d.layout.metre, tag);
-  std::vector<std::string> elements = bed.behind;
+  std::vector<std::string> elements = structure_elements(d.sheet.script, options.structures, tag);
+  elements.insert(elements.end(), bed.behind.begin(), bed.behind.end());
   std::string bytes;
   if (shot.frame->n_soil > 0) {
     SoilElements soil = d.raster ? soil_image(d, shot, range) : soil_disks(d, shot, tag);

@@ -31,6 +31,7 @@ struct ProfileOptions {
   bool mark_front = true;              ///< a dashed line and the run-out at the farthest particle
   std::optional<ColourRange> range{};  ///< for all snapshots; unset: from the snapshots of the same colour
   std::vector<Mark> marks{};           ///< in every panel
+  std::vector<Polyline> structures{};  ///< outlines of structures, drawn behind the ground
   std::optional<Box> view{};           ///< what is shown [m]; unset: the soil of all snapshots and some terrain ahead
 };
 

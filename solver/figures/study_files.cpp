@@ -58,6 +58,15 @@ StudyFiles read_summary(const Json& study) {
   files.failed = realizations.at("failed");
   if (study.contains("quality")) files.quality = quality_line(study.at("quality"));  // version 0.1.0 does not write it
   for (const auto& [key, node] : study.at("quantities").items()) files.quantities[key] = read_quantity(node);
+  for (const Json& target : study.value("targets", Json::array())) {
+    const Json& of = target.at("reached");
+    files.reached[target.at("name")] = {.k = of.at("k"),
+                                        .n = of.at("n"),
+                                        .unknown = of.at("undecided"),
+                                        .p = of.at("p"),
+                                        .lo = of.at("lo"),
+                                        .hi = of.at("hi")};
+  }
   if (!files.quantities.contains("influence_zone_m")) throw IoError("quantities.influence_zone_m is missing");
   return files;
 }
@@ -73,7 +82,9 @@ StudyFiles read_study(const fs::path& directory) {
     throw IoError(summary.string() + " is not a valid study summary: " + e.what());
   }
   for (const Record& r : read_csv(directory / "realizations.csv", "index"))
-    if (r.done) files.realizations.push_back({r.index, r.measures.influence_zone, r.mean_phi_deg});
+    if (r.done)
+      files.realizations.push_back(
+          {r.index, r.measures.influence_zone, r.mean_phi_deg, r.is_lower_bound(measure_table[0])});
   return files;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "statistics/histogram.hpp"
+#include "statistics/proportion.hpp"
 #include "statistics/sample.hpp"
 
 namespace talus::figures {
@@ -30,8 +31,9 @@ struct Quantity {
 /// A finished realization.
 struct Done {
   std::int64_t index;
-  double influence_zone;  ///< [m]
-  double mean_phi_deg;    ///< [deg]
+  double influence_zone;     ///< [m]
+  double mean_phi_deg;       ///< [deg]
+  bool lower_bound = false;  ///< soil left the terrain: it may have gone farther
 };
 
 /// A study as its files tell it.
@@ -44,6 +46,7 @@ struct StudyFiles {
   std::string quality;                         ///< quality_line() of the study; empty where there is nothing to say
   std::map<std::string, Quantity> quantities;  ///< by key: "influence_zone_m"
   std::vector<Done> realizations;              ///< in order of index
+  std::map<std::string, Proportion> reached;   ///< of each target, by its name
 
   const Quantity& runout() const { return quantities.at("influence_zone_m"); }
 };

@@ -11,8 +11,14 @@
 #include "particles/particles.hpp"
 #include "sph/right_hand_side.hpp"
 #include "sph/step_extrema.hpp"
+#include "sph/wall_load.hpp"
 
 namespace talus {
+
+/// Rates of density [kg/m3/s] and of elastic deviatoric stress [Pa/s].
+struct ElasticRates {
+  double drho, dtxx, dtyy, dtxy;
+};
 
 /// Evaluates the right-hand side and integrates it over a step. A back end keeps the rates of its last evaluation,
 /// which the leapfrog needs for the next step; when particles are reordered the rates must follow.
@@ -34,6 +40,15 @@ class Flow {
   /// @param powers  where not null: filled with the powers in the middle of the step
   virtual StepExtrema step(Soil& soil, WallParticles& walls, const ParticleCells& cells, double dt,
                            Powers* powers = nullptr) = 0;
+
+  /// From now on every step sums up the load of the soil on these boundaries.
+  void observe_loads(std::vector<LoadedBoundary> boundaries) {
+    loaded_ = std::move(boundaries);
+    loads_.assign(loaded_.size(), {});
+  }
+  /// Loads in the middle of the last step on each of those boundaries, the sum of the soil-wall terms of the momentum
+  /// equation with the opposite sign: what the soil's momentum loses, step by step.
+  const std::vector<WallLoad>& loads() const { return loads_; }
 
   /// One pass of the Shepard filter over the densities of the active soil.
   void filter_density(Soil& soil, const WallParticles& walls, const ParticleCells& cells) {
@@ -59,6 +74,13 @@ class Flow {
   /// Takes them over from the arrays of `from`.
   virtual void write_evaluation(Soil& soil, const Soil& from) = 0;
 
+  /// Of the last evaluation, of soil particle i.
+  virtual ElasticRates elastic_rates(const Soil& soil, std::size_t i) const = 0;
+  /// To be called when something else has changed cohesion or friction of the soil.
+  virtual void strength_changed(const Soil&) {}
+  /// To be called when something else has changed WallParticles::drag.
+  virtual void drag_changed(const WallParticles&) {}
+
   /// Wall clock spent in the passes so far.
   const StageTimes& times() const { return times_; }
 
@@ -68,6 +90,8 @@ class Flow {
  protected:
   FlowConstants constants_;
   StageTimes times_;
+  std::vector<LoadedBoundary> loaded_;
+  std::vector<WallLoad> loads_;
 };
 
 /// Pressure of the density of soil particle i [Pa], with the tension cut-off where the options ask for it.

@@ -99,6 +99,8 @@ StepExtrema PlainFlow::step(Soil& soil, WallParticles& walls, const ParticleCell
   const Evaluate evaluate = [&](Soil& s) {
     watch.lap(times_.update);
     evaluate_plain(constants(), s, walls, cells, --left == 0 && powers ? &powers_ : nullptr);
+    for (std::size_t b = 0; left == 0 && b < loaded_.size(); ++b)
+      loads_[b] = load_on(constants(), s, walls, cells, loaded_[b]);
     watch.lap(evaluating);
   };
   PlainState state(soil, start_, evaluate);

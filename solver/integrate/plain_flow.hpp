@@ -45,6 +45,9 @@ class PlainFlow final : public Flow {
   void swap_rates(Soil& soil, std::size_t i, std::size_t j) override;
   void read_evaluation(const Soil& soil, Soil& to) const override;
   void write_evaluation(Soil& soil, const Soil& from) override;
+  ElasticRates elastic_rates(const Soil& soil, std::size_t i) const override {
+    return {soil.drho[i], soil.dtxx[i], soil.dtyy[i], soil.dtxy[i]};
+  }
 
  private:
   Soil start_;

@@ -29,6 +29,14 @@ void for_each_pair(S& soil, P& packed, F&& f) {
   f(soil.p, packed.stress, 4, 3);
 }
 
+/// The place of each wall particle's boundary among those whose load is asked for, else -1.
+void mark_loaded(std::vector<std::int32_t>& slot, const WallParticles& walls, std::span<const LoadedBoundary> loaded) {
+  std::ranges::fill(slot, -1);
+  for (std::size_t w = 0; w < walls.size(); ++w)
+    for (std::size_t s = 0; s < loaded.size(); ++s)
+      if (walls.boundary[w] == loaded[s].boundary) slot[w] = static_cast<std::int32_t>(s);
+}
+
 /// The value that all have in common, if there is one: it need not be loaded for every particle.
 std::optional<double> common_value(std::span<const double> values) {
   const bool same = std::ranges::adjacent_find(values, std::not_equal_to()) == values.end();
@@ -61,6 +69,12 @@ void VectorisedFlow::write_evaluation(Soil&, const Soil& from) {
   });
 }
 
+ElasticRates VectorisedFlow::elastic_rates(const Soil&, std::size_t i) const {
+  const PackedSoil& s = flow_.soil;
+  const auto wide = [i](const std::vector<float>& array) { return static_cast<double>(array[i]); };
+  return {wide(s.drho), wide(s.dtxx), wide(s.dtyy), wide(s.dtxy)};
+}
+
 void VectorisedFlow::swap_rates(Soil& soil, std::size_t i, std::size_t j) {
   for_each_pair(soil, flow_.soil, [&](auto&, auto& packed, std::size_t stride, std::size_t offset) {
     std::swap(packed[stride * i + offset], packed[stride * j + offset]);
@@ -86,6 +100,7 @@ void VectorisedFlow::rebuild_neighbour_lists(const Soil& soil, const WallParticl
   flow_.soil_wall.resize(flow_.soil_clusters);
   flow_.wall_soil.resize(flow_.wall_clusters);
   pack_walls(flow_, constants(), walls);
+  mark_loaded(flow_.walls.slot, walls, loaded_);
   pack_strength(flow_, soil);
   work_.resize(flow_.soil_soil.batches.size() + 1);
   std::iota(work_.begin(), work_.end(), std::size_t{0});  // the lists that tell the work do not exist yet
@@ -209,6 +224,24 @@ void VectorisedFlow::evaluate(Soil& soil, WallParticles& walls, double ahead, bo
   evaluate_in_region(soil, walls, ahead, commit, pack, false, watch);
 }
 
+/// Inside a parallel region; at the state of the last evaluation.
+void VectorisedFlow::sum_loads_in_region() {
+  const std::size_t clusters = flow_.soil_clusters.size() - 1;
+#pragma omp single
+  load_of_cluster_.resize(clusters * loaded_.size());
+  constexpr std::size_t some = 64;
+#pragma omp for schedule(dynamic)
+  for (std::size_t c = 0; c < clusters; c += some)
+    for (std::size_t s = 0; s < loaded_.size(); ++s)
+      load_pass(flow_, constants(), static_cast<std::int32_t>(s), loaded_[s].about,
+                Range{c, std::min(c + some, clusters)}, load_of_cluster_.data() + s * clusters);
+#pragma omp single
+  for (std::size_t s = 0; s < loaded_.size(); ++s) {
+    loads_[s] = {};
+    for (std::size_t c = 0; c < clusters; ++c) loads_[s] += load_of_cluster_[s * clusters + c];
+  }
+}
+
 /// What one thread does of a step: the back end of the schemes, inside a parallel region.
 struct VectorisedFlow::ThreadStep {
   VectorisedFlow& flow;
@@ -220,6 +253,7 @@ struct VectorisedFlow::ThreadStep {
   void evaluate(double ahead, bool commit) {
     flow.evaluate_in_region(soil, walls, ahead, commit, ahead != 0.0 || !flow.present_is_packed_,
                             measure && ahead != 0.0, watch);
+    if (ahead != 0.0 && !flow.loaded_.empty()) flow.sum_loads_in_region();
   }
   StepExtrema move(double dt, PositionVelocity velocity) {
     StepExtrema extrema;

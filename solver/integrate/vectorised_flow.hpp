@@ -31,6 +31,9 @@ class VectorisedFlow final : public Flow {
   void swap_rates(Soil& soil, std::size_t i, std::size_t j) override;
   void read_evaluation(const Soil& soil, Soil& to) const override;
   void write_evaluation(Soil& soil, const Soil& from) override;
+  ElasticRates elastic_rates(const Soil& soil, std::size_t i) const override;
+  void strength_changed(const Soil& soil) override { pack_strength(flow_, soil); }
+  void drag_changed(const WallParticles& walls) override { pack_wall_cohesion(flow_, constants(), walls); }
 
   /// The operation of integrate/schemes.hpp, outside a step: rates of the soil, and stress of the walls, at the state
   /// that the present rates lead to after `ahead` [s].
@@ -56,10 +59,13 @@ class VectorisedFlow final : public Flow {
   void evaluate_in_region(Soil& soil, WallParticles& walls, double ahead, bool commit, bool pack, bool measure,
                           Stopwatch& watch);
 
+  void sum_loads_in_region();
+
   PackedFlow flow_;
-  std::vector<std::size_t> work_ = {0};  ///< neighbours to sum over in all batches before each one
-  std::vector<ThreadRange> ranges_;      ///< by thread
-  bool present_is_packed_ = false;       ///< the packed arrays hold the present state
+  std::vector<WallLoad> load_of_cluster_;  ///< of the last step, cluster by cluster for each boundary
+  std::vector<std::size_t> work_ = {0};    ///< neighbours to sum over in all batches before each one
+  std::vector<ThreadRange> ranges_;        ///< by thread
+  bool present_is_packed_ = false;         ///< the packed arrays hold the present state
 };
 
 }  // namespace talus

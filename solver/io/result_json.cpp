@@ -90,6 +90,15 @@ class ObjectIo {
     if (found == std::end(ending_names)) fail(key, "end_time, at_rest or interrupted");
     value = static_cast<Ending>(found - ending_names);
   }
+  void target_kind(const char* key, TargetKind& value) {
+    std::string name = word(value);
+    text(key, name);
+    const auto* const found = std::ranges::find(target_kind_words, name);
+    if (found == target_kind_words.end()) fail(key, "point, stretch or structure");
+    value = static_cast<TargetKind>(found - target_kind_words.begin());
+  }
+  /// Whether a list is to be transferred that is written only where it is not empty.
+  bool has_list(const char* key, bool empty) const { return reading_ ? node_.contains(key) : !empty; }
   void verdict(const char* key, Verdict& value) {
     std::string name = word(value);
     text(key, name);
@@ -210,6 +219,21 @@ void transfer_measures(ObjectIo& root, RunResult& result) {
   root.texts_or_none("notes", result.notes);
 }
 
+/// Only runs with targets have any.
+void transfer_target(ObjectIo node, TargetOutcome& target) {
+  node.text("name", target.of.name);
+  node.target_kind("kind", target.of.kind);
+  node.boolean(arrives_key, target.arrives);
+  node.boolean(open_key, target.open);
+  for (const TargetNumber& number : target_numbers) {
+    if (!has_number(target.of.kind, number)) continue;
+    if (number.optional)
+      node.number_or_null(number.key, target.*number.member);
+    else
+      node.number(number.key, target.*number.member);
+  }
+}
+
 /// Every member of the document, in its order.
 void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
   transfer_measures(root, result);
@@ -236,6 +260,7 @@ void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
   root.text_or_empty("simd", result.simd);
   root.digest("digest", result.digest);
   transfer_quality(root, result);
+  if (root.has_list("targets", result.targets.empty())) root.list("targets", result.targets, transfer_target);
 
   ObjectIo field = root.object("field");
   double mean_phi_deg = degrees(result.field.mean_phi);

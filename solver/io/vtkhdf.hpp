@@ -4,8 +4,8 @@
 // XDMF file for ParaView 5.11 that points into the same arrays.
 //
 // Arrays at every step of n particles (float32): Points [m], velocity [m/s], displacement [m], each (n, 3); stress (n,
-// 6) [Pa; XX YY ZZ XY YZ XZ, positive in tension]; density [kg/m3], pressure [Pa], friction_angle_deg, shear_rate
-// [1/s], each (n). Stored once (int32): is_wall, id, each (n). Points of a case
+// 6) [Pa; XX YY ZZ XY YZ XZ, positive in tension]; density [kg/m3], pressure [Pa], friction_angle_deg, cohesion
+// [Pa], shear_rate [1/s], each (n). Stored once (int32): is_wall, id, each (n). Points of a case
 // far from zero (Terrain::origin) are float64, which keeps the micrometre; the attributes origin_x_m and origin_y_m of
 // VTKHDF name the origin, which is part of them.
 // Not thread-safe (HDF5).

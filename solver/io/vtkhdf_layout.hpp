@@ -47,7 +47,7 @@ constexpr Field scalar_field(const char* path) {
           [](Frame& f, std::size_t i, const float* from) { (f.*member)[i] = *from; }};
 }
 
-inline constexpr std::array<Field, 8> fields = {{
+inline constexpr std::array<Field, 9> fields = {{
     vector_field<&Frame::position>("VTKHDF/Points"),
     vector_field<&Frame::velocity>("VTKHDF/PointData/velocity"),
     vector_field<&Frame::displacement>("VTKHDF/PointData/displacement"),
@@ -56,6 +56,7 @@ inline constexpr std::array<Field, 8> fields = {{
     {"VTKHDF/PointData/friction_angle_deg", 1,
      [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>(friction_angle_deg(f.tan_phi[i])); },
      [](Frame& f, std::size_t i, const float* from) { f.tan_phi[i] = std::tan(radians(*from)); }},
+    scalar_field<&Frame::cohesion>("VTKHDF/PointData/cohesion"),
     scalar_field<&Frame::shear_rate>("VTKHDF/PointData/shear_rate"),
     // VTK's order of a symmetric tensor: XX YY ZZ XY YZ XZ.
     {"VTKHDF/PointData/stress", 6,
@@ -73,7 +74,8 @@ inline constexpr const Field& points = fields[0];
 /// The arrays of a frame, all of one length.
 template <class F>
 auto arrays_of(F& f) {
-  return std::tie(f.position, f.displacement, f.velocity, f.density, f.pressure, f.tan_phi, f.shear_rate, f.stress);
+  return std::tie(f.position, f.displacement, f.velocity, f.density, f.pressure, f.tan_phi, f.cohesion, f.shear_rate,
+                  f.stress);
 }
 
 /// Arrays that never change, stored once in VTKHDF/PointData: 1 for walls; the particle's number.

@@ -26,6 +26,17 @@ inline double largest_viscosity(const InertialFriction<>& of, double p) {
   return std::sqrt(p * of.rho_s) * of.d * std::max(of.delta_mu / of.I_0, of.mu_inf);
 }
 
+/// Loss of strength from peak to residual with plastic shear strain. The residual values are at most the peak ones of
+/// each particle. Law: softening.hpp.
+struct Softening {
+  std::optional<double> phi = {};  ///< residual friction angle [rad], in [0, pi/2); unset: the peak stays
+  std::optional<double> c = {};    ///< residual cohesion, or undrained strength [Pa], >= 0; unset: the peak stays
+  std::optional<double> displacement = {};  ///< across a shear band until the strength is residual [m], > 0
+  std::optional<double> band_width = {};    ///< of a shear band [m], > 0; unset: what the spacing resolves
+  std::optional<double> shear_strain = {};  ///< instead of a displacement: plastic shear strain until then [-], > 0
+  bool operator==(const Softening&) const = default;
+};
+
 /// A Mohr-Coulomb soil, [Z20] Eqs. 3-6, whose resistance to flow grows with the rate as that of a Bingham fluid or by
 /// mu(I).
 struct Material {
@@ -35,6 +46,11 @@ struct Material {
   double c = 0.0;                               ///< cohesion                          [Pa],    >= 0
   double eta = 0.0;                             ///< viscosity once it has yielded     [Pa s],  >= 0
   std::optional<InertialFriction<>> mu_i = {};  ///< instead of a viscosity
+  std::optional<double> r_u =
+      {};                   ///< pore pressure over total vertical stress [-], in [0, 1]; unset: of the water line
+  bool undrained = false;   ///< c is the undrained strength at the ground surface, phi is 0
+  double c_gradient = 0.0;  ///< growth of the undrained strength with depth   [Pa/m],  >= 0
+  std::optional<Softening> softening = {};
   bool operator==(const Material&) const = default;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// What measurements and back-analyses give for the rate dependence of types of soil. `talus validate` proposes it, and
-// README.md prints it.
+// What measurements and back-analyses give for the rate dependence and the strength of types of soil. `talus validate`
+// proposes it, and README.md prints it.
 
 #include <array>
 
@@ -45,6 +45,33 @@ inline constexpr std::array soil_types{
     granular(
         "dry sand, gravel, broken rock", 0.26, 0.279,
         "Jop, Forterre & Pouliquen 2006, Nature 441, 727-730: glass beads of 0.53 mm; grain diameter from the site"),
+};
+
+/// A range of a key of material, for a type of soil.
+struct StrengthValue {
+  const char* soil;
+  const char* key;   ///< of material, or of material.softening
+  double low, high;  ///< in the unit of the key
+  const char* source;
+};
+
+/// Of pore pressure: gamma_w cos^2(beta)/gamma with gamma = 20 kN/m3 and slopes of 30 and 0 degrees.
+inline constexpr std::array strength_values{
+    StrengthValue{"slope with its water table at the ground, flow parallel to it", "r_u", 0.37, 0.49,
+                  "gamma_w cos^2(beta)/gamma of the infinite slope (Skempton & DeLory 1957, Proc. 4th ICSMFE 2, "
+                  "378-381), gamma = 20 kN/m3, 30 to 0 degrees"},
+    StrengthValue{"slope with its water table at half the thickness", "r_u", 0.18, 0.25, "half of that"},
+    StrengthValue{"clay of low strength", "undrained_strength_kPa", 20.0, 40.0, "EN ISO 14688-2:2018"},
+    StrengthValue{"clay of medium strength", "undrained_strength_kPa", 40.0, 75.0, "EN ISO 14688-2:2018"},
+    StrengthValue{"clay of high strength", "undrained_strength_kPa", 75.0, 150.0, "EN ISO 14688-2:2018"},
+    StrengthValue{"normally consolidated clay below the water table", "undrained_strength_gradient_kPa_m", 1.0, 2.0,
+                  "0.22 of the vertical effective stress (Mesri 1975, J. Geotech. Eng. Div. 101(4), 409-412) at a "
+                  "buoyant unit weight of 5 to 9 kN/m3"},
+    StrengthValue{"soil with a clay fraction below 25 %", "residual_friction_angle_deg", 20.0, 35.0,
+                  "Skempton 1985, Geotechnique 35, 3-18: typically above 20 degrees, as sand or silt"},
+    StrengthValue{"clay of more than 50 % kaolinite", "residual_friction_angle_deg", 15.0, 15.0, "Skempton 1985"},
+    StrengthValue{"clay of more than 50 % illite", "residual_friction_angle_deg", 10.0, 10.0, "Skempton 1985"},
+    StrengthValue{"clay of more than 50 % montmorillonite", "residual_friction_angle_deg", 5.0, 5.0, "Skempton 1985"},
 };
 
 }  // namespace talus

@@ -49,12 +49,16 @@ double thickness_above(std::span<const Vec2> outline, Vec2 point) {
   return length;
 }
 
-double depth_below_surface(std::span<const SlidePart> slide, Vec2 point) {
-  double depth = 0.0;
+std::optional<double> top_of(std::span<const SlidePart> slide, double x) {
+  std::optional<double> top;
   for (const SlidePart& part : slide)
-    if (const std::vector<double> y = crossings(part.outline, point.x); !y.empty())
-      depth = std::max(depth, y.back() - point.y);
-  return depth;
+    if (const std::vector<double> y = crossings(part.outline, x); !y.empty())
+      top = std::max(top.value_or(y.back()), y.back());
+  return top;
+}
+
+double depth_below_surface(std::span<const SlidePart> slide, Vec2 point) {
+  return std::max(0.0, top_of(slide, point.x).value_or(point.y) - point.y);
 }
 
 double greatest_depth(std::span<const SlidePart> slide) {

@@ -2,6 +2,7 @@
 // From outlines to points: area, depth of burial, walls as lines, and the rows of particles that line them.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,9 @@ Box bounding_box(std::span<const SlidePart> slide);
 
 /// Thickness of the soil above `point`: the length of the vertical line that lies inside the outline [m].
 double thickness_above(std::span<const Vec2> outline, Vec2 point);
+
+/// Height of the highest soil at x, that of the ground surface before the slide [m]; unset: no outline has soil there.
+std::optional<double> top_of(std::span<const SlidePart> slide, double x);
 
 /// Depth of a point below the highest outline above or below it [m], >= 0; 0 beside the outlines.
 double depth_below_surface(std::span<const SlidePart> slide, Vec2 point);

@@ -62,13 +62,24 @@ struct Polyline {
 
 enum class WallSlip { no_slip, friction, free_slip };  ///< friction: the soil's own, or a smaller angle of the wall
 
+/// A part of a boundary with a friction of its own, between two vertical lines.
+struct WallStretch {
+  double x1 = 0.0, x2 = 0.0;      ///< from x1 to x2 [m], x1 < x2
+  double phi = 0.0;               ///< friction angle [rad], in [0, pi/2)
+  std::optional<double> c = {};   ///< cohesion [Pa], >= 0; unset: the soil's
+  std::optional<double> xi = {};  ///< turbulence coefficient of Voellmy's law [m/s2], > 0; unset: none
+  bool operator==(const WallStretch&) const = default;
+};
+
 /// A rigid boundary of the flow.
 struct Boundary {
   std::string name = "bed";
   Polyline line;
   WallSlip slip = WallSlip::no_slip;
-  double phi = 0.0;              ///< friction angle of the wall, used with WallSlip::friction [rad], in [0, pi/2)
-  std::optional<double> c = {};  ///< cohesion of the wall, used with WallSlip::friction [Pa], >= 0; unset: the soil's
+  double phi = 0.0;               ///< friction angle of the wall, used with WallSlip::friction [rad], in [0, pi/2)
+  std::optional<double> c = {};   ///< cohesion of the wall, used with WallSlip::friction [Pa], >= 0; unset: the soil's
+  std::optional<double> xi = {};  ///< of Voellmy's law, used with WallSlip::friction [m/s2], > 0; unset: none
+  std::vector<WallStretch> stretches = {};  ///< that do not overlap
   bool operator==(const Boundary&) const = default;
 };
 

@@ -80,7 +80,8 @@ struct WallParticles {
   std::vector<double> p;               ///< pressure extrapolated from the soil [Pa]
   std::vector<double> sxx, syy, sxy;   ///< stress extrapolated from the soil [Pa]
   std::vector<double> density_ratio;   ///< rho/rho0 of the soil extrapolated to here [-]; 0 where no soil is near
-  std::vector<std::int32_t> boundary;  ///< index of the boundary that each belongs to
+  std::vector<double> drag;            ///< turbulent friction, rho g v^2/xi [Pa]; empty where no wall has any
+  std::vector<std::int32_t> boundary;  ///< index of the friction of each in FlowConstants::boundaries
   double volume = 0.0;                 ///< of each particle [m3/m]
 
   std::size_t size() const { return x.size(); }

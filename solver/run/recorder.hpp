@@ -1,5 +1,5 @@
 #pragma once
-// The files that a run writes while it goes on: snapshots and history.
+// The files that a run writes while it goes on: snapshots, history, and that of its targets.
 
 #include <filesystem>
 #include <future>
@@ -11,13 +11,13 @@
 
 namespace talus {
 
-/// Writes snapshots.vtkhdf and history.csv into a directory. Snapshots are written by a thread of their own while the
-/// run goes on. Not thread-safe: one run owns it.
+/// Writes snapshots.vtkhdf, history.csv and, where the case has targets, targets.csv into a directory. Snapshots are
+/// written by a thread of their own while the run goes on. Not thread-safe: one run owns it.
 class Recorder {
  public:
   /// @param resumed  go on with the files of an earlier process, as they were at the time of the simulation
   /// @throws IoError when those cannot be read
-  Recorder(const std::filesystem::path& directory, const Simulation& simulation, const TimeControl& time, bool resumed);
+  Recorder(const std::filesystem::path& directory, const Simulation& simulation, const Model& model, bool resumed);
 
   /// To be called after every step. A snapshot is that of the first step at or after its time: no step is shortened for
   /// it.
@@ -35,11 +35,15 @@ class Recorder {
   void finish(const Simulation& simulation);
 
  private:
-  std::filesystem::path history_file_;
+  void add_rows(const Simulation& simulation);
+
+  std::filesystem::path history_file_, target_file_;
   std::optional<SnapshotWriter> snapshots_;
   std::vector<double> due_;  ///< snapshot times to come [s]
   double history_interval_;  ///< [s]
   std::vector<HistoryRow> history_;
+  std::vector<Target> targets_;
+  std::vector<TargetRow> target_history_;
   std::future<void> writing_;  ///< last member: its thread is waited for before the others are destroyed
 };
 

@@ -8,6 +8,7 @@
 #include "run/dissipation.hpp"
 #include "run/realization.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/pore_pressure.hpp"
 
 namespace talus {
 namespace {
@@ -20,6 +21,19 @@ std::string pointer_of(std::string_view check) {
   if (check == "few_particles_across") return "/particle_spacing_m";
   if (check == "mass_changed") return "/particle_placement";
   return check == "short_correlation_length" ? "/random_field" : "/time/fixed_step_s";
+}
+
+/// Soil without effective stress is allowed: it is a fluid.
+void warn_of_liquefied_soil(const Model& model, const ParticlePlan& plan, std::vector<Fault>& warnings) {
+  if (!has_pore_pressure(model)) return;
+  const PorePressureSummary water = summary_of(pore_pressure_ratios(model, plan.soil));
+  if (water.liquefied == 0) return;
+  char text[240];
+  std::snprintf(text, sizeof text,
+                "leaves %lld of %zu particles without effective stress (pore pressure at or above the total normal "
+                "stress): they are liquefied and have no friction",
+                static_cast<long long>(water.liquefied), plan.soil.size());
+  warnings.push_back({model.water.line.empty() ? "/material/r_u" : "/water", text});
 }
 
 }  // namespace
@@ -41,6 +55,7 @@ std::vector<Fault> warnings_before_run(const Case& c, const ParticlePlan& plan, 
   for (const QualityReason& reason : assess(facts).reasons)
     warnings.push_back({pointer_of(reason.check), reason.message});
   std::ranges::move(dissipation_warnings(c.model), std::back_inserter(warnings));
+  warn_of_liquefied_soil(c.model, plan, warnings);
   if (c.field && field.captured_variance < little_variance) {
     char text[200];
     std::snprintf(

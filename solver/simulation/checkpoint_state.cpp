@@ -49,6 +49,11 @@ CheckpointState Simulation::state() const {
   s.reals["energy"].push_back(contact_.taken());
   const auto thickness = flow_thickness_.state();
   s.reals["flow_thickness"].assign(thickness.begin(), thickness.end());
+  if (strength_loss_.active()) {
+    save("plastic_strain", strength_loss_.strain());
+    save("plastic_strain_pending", strength_loss_.pending());
+  }
+  if (!model_.targets.empty()) s.reals["targets"] = gauges_.state();
   s.integers["material"].assign(soil_.material.begin(), soil_.material.end());
   s.integers["id"].assign(soil_.id.begin(), soil_.id.end());
   s.integers["penetrated"].assign(contact_.lost_ids().begin(), contact_.lost_ids().end());
@@ -88,6 +93,11 @@ void Simulation::restore(const CheckpointState& state) {
 
   const auto& thickness = array_of(state.reals, "flow_thickness", 3);
   flow_thickness_.restore({thickness[0], thickness[1], thickness[2]});
+
+  if (strength_loss_.active())
+    strength_loss_.restore(array_of(state.reals, "plastic_strain", n),
+                           array_of(state.reals, "plastic_strain_pending", n));
+  if (!model_.targets.empty()) gauges_.restore(array_of(state.reals, "targets", gauges_.state().size()));
 
   const auto& counters = array_of(state.integers, "counters", 3);
   if (counters[0] < 0 || counters[0] > static_cast<std::int64_t>(n)) refuse("more active particles than there are");

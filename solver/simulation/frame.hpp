@@ -22,6 +22,7 @@ struct Frame {
   std::vector<double> density;                ///< [kg/m3]
   std::vector<double> pressure;               ///< [Pa], positive in compression
   std::vector<double> tan_phi;                ///< tangent of the friction angle [-]; 0 for walls
+  std::vector<double> cohesion;               ///< cohesion or undrained strength [Pa]; 0 for walls
   std::vector<double> shear_rate;             ///< gamma_dot [1/s]
   std::vector<double> phi_stdev;              ///< of the friction angle over realizations [rad]; empty in a run
   std::vector<std::array<double, 4>> stress;  ///< sigma xx, yy, zz, xy [Pa], positive in tension

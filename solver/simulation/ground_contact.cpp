@@ -7,13 +7,22 @@
 namespace talus {
 
 namespace {
+
 constexpr std::size_t group = 512;  ///< particles whose actions are summed up in their order, by one thread
+
+/// Adds impulses, of which there are as many or none.
+void add(std::vector<WallLoad>& sum, const std::vector<WallLoad>& more) {
+  if (sum.empty()) sum.resize(more.size());
+  for (std::size_t s = 0; s < more.size(); ++s) sum[s] += more[s];
 }
 
+}  // namespace
+
 GroundContact::GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx, Vec2 g,
-                             std::size_t particles)
+                             std::size_t particles, std::vector<Boundary> boundaries)
     : ground_(std::move(lines)),
       friction_(std::move(friction)),
+      boundaries_(std::move(boundaries)),
       dx_(dx),
       g_(g),
       next_(particles, 0.0f),
@@ -26,9 +35,11 @@ double GroundContact::act(Soil& soil, double displacement) {
   for (std::size_t k = 0; k < actions_.size(); ++k)
     actions_[k] = act_on_some(soil, k * group, std::min((k + 1) * group, soil.n_active));
   double farthest = 0.0;
+  impulses_.clear();
   for (const Action& action : actions_) {
     farthest = std::max(farthest, action.put_back);
     taken_ += action.taken;
+    add(impulses_, action.impulses);
   }
   travelled_ += 2.0 * farthest;  // what was put back may be nearer to other ground
   return farthest;
@@ -42,6 +53,7 @@ GroundContact::Action GroundContact::act_on_some(Soil& soil, std::size_t begin, 
     const Action one = act_on(soil, i);
     all.put_back = std::max(all.put_back, one.put_back);
     all.taken += one.taken;
+    add(all.impulses, one.impulses);
   }
   return all;
 }
@@ -49,6 +61,7 @@ GroundContact::Action GroundContact::act_on_some(Soil& soil, std::size_t begin, 
 GroundContact::Action GroundContact::act_on(Soil& soil, std::size_t i) {
   constexpr int surfaces = 4;        // a particle in a corner touches several
   constexpr double rounding = 1e-9;  // of positions that were put back to the reach [dx]
+  Action action;
   const auto id = static_cast<std::size_t>(soil.id[i]);
   const Vec2 start = soil.position(i), velocity = soil.velocity(i);
   for (int k = 0; k < surfaces; ++k) {
@@ -70,10 +83,23 @@ GroundContact::Action GroundContact::act_on(Soil& soil, std::size_t i) {
     const Vec2 back = near.point + to * normal;
     soil.x[i] = back.x;
     soil.y[i] = back.y;
-    slow_down(soil, i, normal, friction_[near.line]);
+    const Vec2 before = soil.velocity(i);
+    slow_down(soil, i, normal,
+              friction_[boundaries_.empty() ? near.line : friction_index(boundaries_, near.line, back.x)]);
+    add_impulse(action, near.line, soil.m[i] * (before - soil.velocity(i)), near.point);
   }
   const Vec2 moved = soil.position(i) - start;
-  return {norm(moved), soil.m[i] * (0.5 * (norm2(velocity) - norm2(soil.velocity(i))) + dot(g_, moved))};
+  action.put_back = norm(moved);
+  action.taken = soil.m[i] * (0.5 * (norm2(velocity) - norm2(soil.velocity(i))) + dot(g_, moved));
+  return action;
+}
+
+void GroundContact::add_impulse(Action& action, std::uint32_t line, Vec2 impulse, Vec2 at) const {
+  for (std::size_t s = 0; s < loaded_.size(); ++s) {
+    if (loaded_[s].boundary != static_cast<std::int32_t>(line)) continue;
+    action.impulses.resize(loaded_.size());
+    action.impulses[s] += {impulse, cross(at - loaded_[s].about, impulse)};
+  }
 }
 
 void GroundContact::slow_down(Soil& soil, std::size_t i, Vec2 normal, const WallFriction& wall) const {

@@ -9,6 +9,7 @@
 #include "particles/ground.hpp"
 #include "particles/particles.hpp"
 #include "sph/flow_constants.hpp"
+#include "sph/wall_load.hpp"
 
 namespace talus {
 
@@ -26,16 +27,23 @@ class GroundContact {
   static constexpr double deepest = 0.5;
 
   /// @param lines     of the boundaries, at least one
-  /// @param friction  of each boundary
+  /// @param friction  as wall_friction() returns it
+  /// @param boundaries  whose stretches have frictions of their own; empty: none has
   /// @param dx        particle spacing [m]
   /// @param g         gravity [m/s2]
   GroundContact(std::vector<Polyline> lines, std::vector<WallFriction> friction, double dx, Vec2 g,
-                std::size_t particles);
+                std::size_t particles, std::vector<Boundary> boundaries = {});
 
   /// To be called after every step.
   /// @param displacement  of the particle that moved the farthest since the last call [m]
   /// @return the largest distance that a particle was put back [m]; 0 where the contact has not acted
   double act(Soil& soil, double displacement);
+
+  /// From now on the impulses on these boundaries are summed up.
+  void observe_loads(std::vector<LoadedBoundary> boundaries) { loaded_ = std::move(boundaries); }
+  /// Impulse of the last call of act() on each of them: what the soil's momentum lost [N s/m]. Zeros, or nothing where
+  /// it has not acted.
+  const std::vector<WallLoad>& impulses() const { return impulses_; }
 
   /// Particles that have ever been lost in the ground.
   std::int64_t lost() const;
@@ -48,15 +56,18 @@ class GroundContact {
  private:
   /// What was done to one particle or to several.
   struct Action {
-    double put_back = 0.0;  ///< largest distance [m]
-    double taken = 0.0;     ///< kinetic and potential energy [J/m]
+    double put_back = 0.0;                ///< largest distance [m]
+    double taken = 0.0;                   ///< kinetic and potential energy [J/m]
+    std::vector<WallLoad> impulses = {};  ///< on the boundaries that are observed; empty: none
   };
   Action act_on_some(Soil& soil, std::size_t begin, std::size_t end);
   Action act_on(Soil& soil, std::size_t i);
+  void add_impulse(Action& action, std::uint32_t line, Vec2 impulse, Vec2 at) const;
   void slow_down(Soil& soil, std::size_t i, Vec2 normal, const WallFriction& wall) const;
 
   Ground ground_;
   std::vector<WallFriction> friction_;
+  std::vector<Boundary> boundaries_;
   double dx_;
   Vec2 g_;
   double travelled_ = 0.0;   ///< sum of the displacements so far [m]
@@ -64,6 +75,8 @@ class GroundContact {
   std::vector<std::uint8_t> lost_;
   std::vector<Action> actions_;  ///< of the last call, by group of particles
   double taken_ = 0.0;
+  std::vector<LoadedBoundary> loaded_;
+  std::vector<WallLoad> impulses_;  ///< of the last call
 };
 
 }  // namespace talus

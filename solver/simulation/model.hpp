@@ -6,6 +6,7 @@
 
 #include "material/material.hpp"
 #include "particles/geometry_input.hpp"
+#include "simulation/target.hpp"
 #include "sph/numerics.hpp"
 
 namespace talus {
@@ -27,14 +28,25 @@ struct TimeControl {
   bool operator==(const TimeControl&) const = default;
 };
 
+enum class PoreWater { carried };  ///< each particle keeps its ratio of pore pressure to total stress
+
+/// Water in the soil before the slide.
+struct Water {
+  std::vector<Vec2> line;   ///< phreatic line [m], x increasing; empty: none
+  double density = 1000.0;  ///< of the water [kg/m3], > 0
+  PoreWater in_motion = PoreWater::carried;
+  bool operator==(const Water&) const = default;
+};
+
 /// A deterministic problem in SI units and radians. `case/` makes it from JSON.
 struct Model {
   Terrain terrain;                   ///< what is measured from and drawn; the flow sees the boundaries
-  std::vector<Boundary> boundaries;  ///< at least one: the ground_line() of the terrain
+  std::vector<Boundary> boundaries;  ///< at least one: the ground_line() of the terrain; then structures
   std::vector<SlidePart> slide;
   std::vector<Material> materials;  ///< at least one
-  double left_out = 0.0;            ///< mass of films that the outlines held, too thin for particles [kg/m]
-  double dx = 0.1;                  ///< particle spacing [m], > 0
+  Water water;
+  double left_out = 0.0;  ///< mass of films that the outlines held, too thin for particles [kg/m]
+  double dx = 0.1;        ///< particle spacing [m], > 0
   Placement placement = Placement::cells;
   Lattice lattice = {};  ///< with Placement::cells
   Vec2 g{0.0, -9.81};    ///< gravity [m/s2]
@@ -43,6 +55,7 @@ struct Model {
   Walls walls;
   TimeControl time;
   std::size_t max_particles = 4'000'000;  ///< refuse to fill more than this
+  std::vector<Target> targets = {};       ///< places to observe, and structures, each of which has a boundary
   bool operator==(const Model&) const = default;
 };
 

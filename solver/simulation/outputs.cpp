@@ -23,7 +23,7 @@ Frame Simulation::frame() const {
   f.n_soil = soil_.size();
   const std::size_t n = soil_.size() + walls_.size();
   for (auto* array : {&f.position, &f.displacement, &f.velocity}) array->resize(n);
-  for (auto* array : {&f.density, &f.pressure, &f.tan_phi, &f.shear_rate}) array->resize(n);
+  for (auto* array : {&f.density, &f.pressure, &f.tan_phi, &f.cohesion, &f.shear_rate}) array->resize(n);
   f.stress.resize(n);
   Soil evaluated;
   flow_->read_evaluation(soil_, evaluated);
@@ -35,6 +35,7 @@ Frame Simulation::frame() const {
     f.density[k] = soil_.rho[i];
     f.pressure[k] = evaluated.p[i];
     f.tan_phi[k] = soil_.tan_phi[i];
+    f.cohesion[k] = soil_.c[i];
     f.shear_rate[k] = evaluated.gamma_dot[i];
     f.stress[k] = stress_components(evaluated.stress(i), evaluated.p[i]);
   }
@@ -53,6 +54,8 @@ HistoryRow Simulation::history_row() const {
   return {time_,      steps_,  farthest(soil_, axis), axis.distance(centre_of_mass(soil_).x), kinetic_energy(soil_),
           max_speed_, energy()};
 }
+
+std::vector<TargetRow> Simulation::target_rows() const { return gauges_.rows(soil_, model_.materials, time_, steps_); }
 
 EnergyBudget Simulation::energy() const {
   return energy_account_.budget(constants(), soil_, starts_, time_, contact_.taken());
@@ -149,6 +152,14 @@ void Simulation::add_friction_facts(RunFacts& f) const {
   f.travel = moment / mass;
 }
 
+/// Soil that slides on friction, or creeps, may still reach what lies no farther ahead of it than that takes it.
+std::vector<TargetOutcome> Simulation::target_outcomes() const {
+  const double front = farthest(soil_, model_.terrain.run_out);
+  return gauges_.outcomes(soil_, model_.materials, model_.terrain.run_out, at_rest(),
+                          rest_speed * std::sqrt(norm(model_.g) * fall_height(model_)),
+                          front + std::max(run_on(), creep()));
+}
+
 RunFacts Simulation::facts() const {
   std::vector<Vec2> starts;
   for (std::size_t id = 0; id < soil_.size(); ++id) starts.push_back(starts_[static_cast<std::int32_t>(id)]);
@@ -191,6 +202,7 @@ RunResult Simulation::result() const {
   r.backend = backend();
   r.simd = simd();
   r.energy = energy();
+  r.targets = target_outcomes();
   return r;
 }
 

@@ -6,6 +6,9 @@
 #include <iterator>
 #include <string>
 
+#include "material/pore_pressure.hpp"
+#include "particles/ground.hpp"
+#include "simulation/pore_pressure.hpp"
 #include "simulation/reach.hpp"
 #include "support/error.hpp"
 
@@ -18,6 +21,17 @@ ParticleEstimate estimate_particles(const Model& model, std::span<const Polyline
   return estimate;
 }
 
+namespace {
+
+/// Takes out the particles of a structure that would stand in the ground, or too near to the first row behind its
+/// surface: the ground is lined there already.
+void remove_founded(std::vector<WallPoint>& points, const Polyline& ground_line, double dx) {
+  const Ground ground({ground_line});
+  std::erase_if(points, [&](const WallPoint& point) { return ground.nearest(point.x).distance < 0.25 * dx; });
+}
+
+}  // namespace
+
 ParticlePlan plan_particles(const Model& model) {
   const std::vector<Polyline> walls = wall_lines(model.boundaries, model.dx, model.placement);
   const double estimate = estimate_particles(model, walls).count(model.dx);
@@ -28,9 +42,11 @@ ParticlePlan plan_particles(const Model& model) {
                                                  " (max_particles); use a larger spacing");
   ParticlePlan plan{fill_slide(model.slide, walls, model.dx, model.placement, model.terrain.run_out.to, model.lattice),
                     {}};
-  for (std::size_t b = 0; b < walls.size(); ++b)
-    std::ranges::move(fill_walls(walls[b], model.dx, model.walls.layers, static_cast<std::int32_t>(b)),
-                      std::back_inserter(plan.walls));
+  for (std::size_t b = 0; b < walls.size(); ++b) {
+    std::vector<WallPoint> points = fill_walls(walls[b], model.dx, model.walls.layers, static_cast<std::int32_t>(b));
+    if (b > 0) remove_founded(points, walls.front(), model.dx);
+    std::ranges::move(points, std::back_inserter(plan.walls));
+  }
   if (plan.soil.empty())
     throw ConfigError("/particle_spacing_m", "no soil particle fits into the slide; use a smaller spacing");
   return plan;
@@ -46,6 +62,28 @@ SlideMass slide_mass(const Model& model, const ParticlePlan& plan) {
   return mass;
 }
 
+namespace {
+
+/// c_u = c_u0 + gradient x depth below the ground surface, where the gradient is not 0.
+void add_strength_by_depth(const Model& model, const ParticlePlan& plan, std::vector<double>& c) {
+  if (std::ranges::none_of(model.materials, [](const Material& m) { return m.c_gradient > 0.0; })) return;
+  const std::vector<double> depth = depths(model, plan.soil);
+  for (std::size_t i = 0; i < c.size(); ++i)
+    c[i] += model.materials[static_cast<std::size_t>(plan.soil[i].material)].c_gradient * depth[i];
+}
+
+/// Friction as the carried pore pressure leaves it; undrained soil has none.
+void apply_water(const Model& model, const ParticlePlan& plan, std::vector<double>& tan_phi) {
+  if (has_pore_pressure(model)) {
+    const std::vector<double> ratio = pore_pressure_ratios(model, plan.soil);
+    for (std::size_t i = 0; i < tan_phi.size(); ++i) tan_phi[i] = total_stress_friction(tan_phi[i], ratio[i]);
+  }
+  for (std::size_t i = 0; i < tan_phi.size(); ++i)
+    if (model.materials[static_cast<std::size_t>(plan.soil[i].material)].undrained) tan_phi[i] = 0.0;
+}
+
+}  // namespace
+
 SoilProperties material_properties(const Model& model, const ParticlePlan& plan) {
   SoilProperties properties;
   for (const SoilPoint& point : plan.soil) {
@@ -53,6 +91,7 @@ SoilProperties material_properties(const Model& model, const ParticlePlan& plan)
     properties.tan_phi.push_back(std::tan(material.phi));
     properties.c.push_back(material.c);
   }
+  add_strength_by_depth(model, plan, properties.c);
   return properties;
 }
 
@@ -110,6 +149,7 @@ Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& p
   Soil soil;
   for_each_state(soil, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
   soil.tan_phi = properties.tan_phi;
+  apply_water(model, plan, soil.tan_phi);
   soil.c = properties.c;
   soil.x_sorted.resize(points.size());
   soil.y_sorted.resize(points.size());
@@ -129,7 +169,7 @@ Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& p
   return soil;
 }
 
-WallParticles make_walls(const std::vector<WallPoint>& points, double dx) {
+WallParticles make_walls(const std::vector<WallPoint>& points, double dx, std::span<const Boundary> boundaries) {
   WallParticles walls;
   walls.volume = dx * dx;
   for (const WallPoint& w : points) {
@@ -138,7 +178,9 @@ WallParticles make_walls(const std::vector<WallPoint>& points, double dx) {
     walls.nx.push_back(w.n.x);
     walls.ny.push_back(w.n.y);
     walls.depth.push_back(w.depth);
-    walls.boundary.push_back(w.boundary);
+    const double foot = w.x.x + w.depth * w.n.x;
+    walls.boundary.push_back(
+        static_cast<std::int32_t>(friction_index(boundaries, static_cast<std::size_t>(w.boundary), foot)));
   }
   for_each_wall_real(walls, [&](const char*, auto& array) { array.assign(points.size(), 0.0); });
   return walls;

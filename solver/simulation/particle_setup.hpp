@@ -67,6 +67,7 @@ double first_step(const Model& model);
 /// @param properties  as many values as the plan has soil particles
 Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& plan, const SoilProperties& properties);
 /// Wall particles without stress, in the order of the plan.
-WallParticles make_walls(const std::vector<WallPoint>& points, double dx);
+/// @param boundaries  whose stretches have frictions of their own
+WallParticles make_walls(const std::vector<WallPoint>& points, double dx, std::span<const Boundary> boundaries);
 
 }  // namespace talus

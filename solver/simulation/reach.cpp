@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "material/pore_pressure.hpp"
 #include "particles/geometry.hpp"
 
 namespace talus {
@@ -13,11 +14,21 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+/// Friction angle of a material once it has softened, as the water leaves it on level ground.
+double lowest_friction_angle(const Model& model, const Material& m) {
+  const double phi = m.softening && m.softening->phi ? std::min(m.phi, *m.softening->phi) : m.phi;
+  const double line = model.water.line.empty() ? 0.0 : model.water.density / m.rho0;
+  const double lambda = m.undrained ? 0.0 : m.r_u.value_or(line);
+  return lambda > 0.0 ? std::atan(total_stress_friction(std::tan(phi), lambda)) : phi;
+}
+
 double smallest_friction_angle(const Model& model) {
-  double phi = std::ranges::min(model.materials, {}, &Material::phi).phi;
+  double phi = infinite;
+  for (const Material& m : model.materials) phi = std::min(phi, lowest_friction_angle(model, m));
   for (const Boundary& b : model.boundaries) {
     if (b.slip == WallSlip::friction) phi = std::min(phi, b.phi);
     if (b.slip == WallSlip::free_slip) phi = 0.0;
+    for (const WallStretch& stretch : b.stretches) phi = std::min(phi, stretch.phi);
   }
   return phi;
 }

@@ -9,6 +9,7 @@
 #include "support/error.hpp"
 #include "support/measures.hpp"
 #include "support/quality.hpp"
+#include "support/targets.hpp"
 
 namespace talus {
 
@@ -56,7 +57,8 @@ struct RunResult {
   FieldSummary field;
   EnergyBudget energy = {};  ///< at the end
   Quality quality = {};
-  std::vector<Fault> warnings = {};  ///< of the case: what can be run but may not be meant
+  std::vector<TargetOutcome> targets = {};  ///< in the order of the case
+  std::vector<Fault> warnings = {};         ///< of the case: what can be run but may not be meant
 };
 
 /// A line of the run's history.

@@ -8,6 +8,7 @@
 
 #include "integrate/schemes.hpp"
 #include "simulation/observables.hpp"
+#include "simulation/pore_pressure.hpp"
 #include "support/error.hpp"
 
 namespace talus {
@@ -23,6 +24,13 @@ bool departed(const Terrain& terrain, Vec2 x) {
 constexpr std::int64_t observation_interval = 20;  ///< steps between two observations of rest and density
 constexpr std::int64_t thickness_interval = 100;   ///< the same of the thickness, which takes longer
 
+/// Pore pressure ratios by id, where softened friction depends on them.
+std::vector<double> ratios_for_softening(const Model& model, const ParticlePlan& plan) {
+  const bool softens =
+      std::ranges::any_of(model.materials, [](const Material& m) { return m.softening && m.softening->phi; });
+  return softens && has_pore_pressure(model) ? pore_pressure_ratios(model, plan.soil) : std::vector<double>{};
+}
+
 /// Adds up the times of parts of a run.
 StageTimes operator+(const StageTimes& a, const StageTimes& b) {
   return {a.sort + b.sort,   a.lists + b.lists,       a.gradient + b.gradient,
@@ -34,21 +42,29 @@ StageTimes operator+(const StageTimes& a, const StageTimes& b) {
 Simulation::Simulation(const Model& model, const ParticlePlan& plan, const SoilProperties& properties)
     : model_(model),
       soil_(make_soil(model, flow_constants(model), plan, properties)),
-      walls_(make_walls(plan.walls, model.dx)),
+      walls_(make_walls(plan.walls, model.dx, model.boundaries)),
       flow_(make_flow(flow_constants(model), soil_)),
       neighbours_(walls_, constants().h, model.dx),
       starts_(plan.soil, bounding_box(model.slide)),
       contact_(wall_lines(model.boundaries, model.dx, model.placement), wall_friction(model.boundaries), model.dx,
-               model.g, plan.soil.size()),
+               model.g, plan.soil.size(), model.boundaries),
+      drag_(constants(), walls_),
+      strength_loss_(model, constants(), soil_, ratios_for_softening(model, plan)),
       energy_account_(constants(), soil_),
+      gauges_(model.targets, model.terrain.run_out.to, model.dx),
       rest_rule_(model.time.stop_at_rest),
       bounds_(step_bounds(model, constants())),
-      max_acceleration_(norm(model.g)) {}
+      max_acceleration_(norm(model.g)) {
+  flow_->observe_loads(gauges_.structures());
+  contact_.observe_loads(gauges_.structures());
+}
 
 void Simulation::step(double until) {
   const double dt = choose_step(until);
   neighbours_.prepare(soil_, walls_, *flow_, dt, max_speed_);
   filter_density_if_due();
+  lose_strength(dt);
+  drag_along_the_bed();
   StepExtrema extrema = flow_step(dt);
 
   Stopwatch watch;
@@ -57,6 +73,7 @@ void Simulation::step(double until) {
   evaluations_ += evaluations_per_step(model_.numerics.integrator);
   check(extrema);
   meet_the_ground(extrema);
+  add_loads(dt);
   max_speed_ = extrema.max_speed;
   max_acceleration_ = extrema.max_acceleration;
   peak_speed_ = std::max(peak_speed_, max_speed_);
@@ -64,6 +81,7 @@ void Simulation::step(double until) {
   if (steps_ % observation_interval == 0) {
     if (rest_rule_.active()) rest_rule_.observe(time_, rms_speed(soil_));
     peak_density_rise_ = std::max(peak_density_rise_, density_rise());
+    gauges_.observe(soil_, model_.materials, time_);
   }
   if (steps_ % thickness_interval == 0) flow_thickness_.observe(soil_, model_.materials, model_.dx, time_);
   retire_departed(extrema);
@@ -97,6 +115,23 @@ void Simulation::filter_density_if_due() {
   watch.lap(times_.update);
 }
 
+/// The first evaluation of the step returns the elastic stress to the yield surface.
+void Simulation::lose_strength(double dt) {
+  if (!strength_loss_.active()) return;
+  Stopwatch watch;
+  const double ahead = model_.numerics.integrator == Integrator::leapfrog ? 0.5 * dt : 0.0;
+  if (strength_loss_.act(*flow_, soil_, ahead, steps_)) flow_->strength_changed(soil_);
+  watch.lap(times_.update);
+}
+
+void Simulation::drag_along_the_bed() {
+  if (!drag_.active()) return;
+  Stopwatch watch;
+  drag_.act(soil_, walls_);
+  flow_->drag_changed(walls_);
+  watch.lap(times_.update);
+}
+
 /// Is every particle finite, and slower than ten times the fastest wave?
 void Simulation::check(const StepExtrema& extrema) const {
   if (!extrema.all_finite || !(extrema.max_speed < 10.0 * bounds_.c)) report_divergence();
@@ -124,6 +159,14 @@ void Simulation::meet_the_ground(StepExtrema& extrema) {
   extrema.max_displacement += put_back;
   extrema.moved_since_sort += put_back;
   flow_->state_changed();
+}
+
+/// What pressed on the structures in the step, and what single particles that hit them lost.
+void Simulation::add_loads(double dt) {
+  if (flow_->loads().empty()) return;
+  std::vector<WallLoad> loads = flow_->loads();
+  for (std::size_t s = 0; s < contact_.impulses().size(); ++s) loads[s] += (1.0 / dt) * contact_.impulses()[s];
+  gauges_.add_loads(loads, dt, time_);
 }
 
 /// Soil that left the terrain stops taking part: it is swapped behind the active ones and keeps its last state.

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "integrate/flow.hpp"
+#include "simulation/basal_drag.hpp"
 #include "simulation/checkpoint_state.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/energy_account.hpp"
@@ -16,6 +17,8 @@
 #include "simulation/neighbour_upkeep.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/run_result.hpp"
+#include "simulation/strength_loss.hpp"
+#include "simulation/target_gauges.hpp"
 
 namespace talus {
 
@@ -48,6 +51,8 @@ class Simulation {
   /// All particles in order of id.
   Frame frame() const;
   HistoryRow history_row() const;
+  /// One for each target.
+  std::vector<TargetRow> target_rows() const;
   /// Where the energy of the run is and has gone.
   EnergyBudget energy() const;
   /// Everything but wall clock, threads, field and quality, which the caller knows.
@@ -67,9 +72,12 @@ class Simulation {
   double choose_step(double until) const;
   StepExtrema flow_step(double dt);
   void filter_density_if_due();
+  void lose_strength(double dt);
+  void drag_along_the_bed();
   void check(const StepExtrema& extrema) const;
   [[noreturn]] void report_divergence() const;
   void meet_the_ground(StepExtrema& extrema);
+  void add_loads(double dt);
   void retire_departed(const StepExtrema& extrema);
   double density_rise() const;
   double relative_speed() const;
@@ -78,6 +86,7 @@ class Simulation {
   bool at_rest() const;
   std::int64_t at_open_end() const;
   void add_friction_facts(RunFacts& f) const;
+  std::vector<TargetOutcome> target_outcomes() const;
   SlideMass mass() const;
 
   Model model_;
@@ -87,8 +96,11 @@ class Simulation {
   NeighbourUpkeep neighbours_;
   StartingPositions starts_;
   GroundContact contact_;
+  BasalDrag drag_;
+  StrengthLoss strength_loss_;
   EnergyAccount energy_account_;
   FlowThickness flow_thickness_;
+  TargetGauges gauges_;
   RestRule rest_rule_;
   StepBounds bounds_;
   double time_ = 0.0;               ///< [s]

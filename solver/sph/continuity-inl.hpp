@@ -117,6 +117,13 @@ HWY_INLINE Real yielded_viscosity(const Point& at, Real p, Real gamma_dot) {
   return eta + inertial_viscosity(mu_i, p, gamma_dot);
 }
 
+/// Pressure of a point [Pa]. @param at  as in update_point
+template <class Point>
+HWY_INLINE auto pressure_of(const FlowConstants& k, const Point& at) {
+  const auto p = pressure(at.constant([](const ConstitutiveParameters& soil) { return soil.eos.B; }), at.q());
+  return k.numerics.tension_cutoff ? apply_tension_cutoff(p) : p;
+}
+
 /// Pressure, stress, and the rates of density and elastic stress.                [Z20] Eqs. 1, 3-10
 /// @param strength  of the soil, or of the wall that it slides along
 /// @param at        the point, or the points of a cluster: q(), constant(get) of its ConstitutiveParameters; elastic()

@@ -2,6 +2,7 @@
 // What a run keeps constant and every loop sees.
 
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "material/material.hpp"
 #include "math/vec2.hpp"
 #include "particles/geometry_input.hpp"
+#include "particles/particles.hpp"
 #include "sph/numerics.hpp"
 
 namespace talus {
@@ -26,6 +28,7 @@ struct WallFriction {
   WallSlip slip = WallSlip::no_slip;
   double tan_phi = std::numeric_limits<double>::infinity();  ///< with WallSlip::friction; otherwise unbounded [-]
   double c = std::numeric_limits<double>::infinity();        ///< cohesion, where the boundary has its own [Pa]
+  std::optional<double> xi = {};                             ///< turbulence coefficient of Voellmy's law [m/s2]
 };
 
 /// Constants of a run that every pair sees.
@@ -38,7 +41,7 @@ struct FlowConstants {
   Numerics numerics;
   Walls walls;
   std::vector<ConstitutiveParameters> soils;  ///< by material
-  std::vector<WallFriction> boundaries;       ///< by boundary
+  std::vector<WallFriction> boundaries;       ///< by boundary, then the stretches of all boundaries
 };
 
 /// @param c_s  speed of sound [m/s]
@@ -50,6 +53,18 @@ std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Ma
 /// @param rho0  reference density of the soil [kg/m3]
 double artificial_shear_viscosity(const FlowConstants& k, double rho0);
 
+/// Of each boundary, then of the stretches of all of them, in their order. Where one has a turbulence coefficient, no
+/// value is infinite, only so large that it never counts.
 std::vector<WallFriction> wall_friction(std::span<const Boundary> boundaries);
+/// Index of the friction of boundary b at x [m] in what wall_friction() returns.
+std::size_t friction_index(std::span<const Boundary> boundaries, std::size_t b, double x);
+
+/// Whether one has a turbulence coefficient. Then the weaker of wall and soil is the one that yields at the lower
+/// stress, since a term that grows with the speed has no counterpart in the soil; otherwise it has the smaller friction
+/// angle and the smaller cohesion of both.
+bool has_turbulent_walls(std::span<const WallFriction> walls);
+
+/// Cohesion of a wall particle, with what the speed of the flow adds to it [Pa].
+double wall_cohesion(const FlowConstants& k, const WallParticles& walls, std::size_t w);
 
 }  // namespace talus

@@ -11,6 +11,7 @@
 
 #include "math/tensor-inl.hpp"
 #include "sph/flow_constants.hpp"
+#include "sph/wall-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace talus::HWY_NAMESPACE {
@@ -114,6 +115,59 @@ HWY_INLINE Vector<Real> add_force(Vector<Real> sum, Symmetric<Real> s_i, Symmetr
                                   Vector<Real> r_ij, Vector<Real> arm) {
   return fma(VF, (s_i + s_j) * r_ij - rho_rho_Pi * arm, sum);
 }
+
+/// Calls run<Quadratic, Reconstruct>() for the options of the artificial viscosity.
+template <class Run>
+HWY_INLINE void with_artificial_viscosity(const Numerics& n, Run&& run) {
+  const bool quadratic = n.beta > 0.0, reconstruct = n.velocity_jump == VelocityJump::reconstructed;
+  if (quadratic && reconstruct)
+    run.template operator()<true, true>();
+  else if (quadratic)
+    run.template operator()<true, false>();
+  else if (reconstruct)
+    run.template operator()<false, true>();
+  else
+    run.template operator()<false, false>();
+}
+
+/// What a soil-wall pair adds to the momentum equation besides the stress.
+template <class Real>
+struct WallTerm {
+  Real Pi;            ///< rho_i rho_j Pi_ij [Pa]
+  Real VF;            ///< volume of the wall particle times the kernel's -F
+  Vector<Real> v_ij;  ///< relative velocity [m/s]
+  Vector<Real> arm;   ///< the part of r_ij along which the artificial viscosity acts
+};
+
+/// What all soil-wall pairs of a run have in common in the momentum equation.
+/// `Quadratic`: beta is not zero. `Reconstruct`: VelocityJump::reconstructed.
+template <class Real, bool Quadratic, bool Reconstruct>
+struct WallForce {
+  WallLaw<Real> wall;
+  ArtificialViscosity<Real, Quadratic> viscosity;
+  Real volume;  ///< of a wall particle [m2]
+
+  /// @param unit  of the distances [m]
+  HWY_INLINE WallForce(const FlowConstants& k, double unit) : wall(k, unit), viscosity(k, unit), volume(k.dx * k.dx) {}
+
+  /// @param of_i    viscosity.of_particle(rho_i)
+  /// @param kernel  -F over its normalisation; @param r, r2  separation r_ij and its square
+  HWY_INLINE WallTerm<Real> term(Real of_i, Real rho_i, Vector<Real> v_i, const WallParticle<Real>& j, Real kernel,
+                                 Vector<Real> r, Real r2) const {
+    const WallPair<Real> w = wall.pair(r, v_i, j);
+    Real VF = volume * kernel;
+    if (wall.only_approaching) VF = select_or_zero(w.v_dot_r < Real(0.0), VF);
+    const Vector<Real> arm = Reconstruct ? across_wall(r, j.normal) : r;
+    const Real approach = min(Reconstruct ? dot(w.v_ij, arm) : w.v_dot_r, Real(0.0));
+    return {viscosity(of_i, rho_i, rho_i, approach, r2), VF, w.v_ij, arm};
+  }
+  /// Adds the term to the sum of add_force(). @param s_w  stress extrapolated to the wall particle [Pa]
+  HWY_INLINE Vector<Real> add(Vector<Real> sum, Symmetric<Real> s_i, Symmetric<Real> s_w, const WallTerm<Real>& term,
+                              Vector<Real> r) const {
+    return Reconstruct ? add_force(sum, s_i, s_w, term.Pi, term.VF, r, term.arm)
+                       : add_force(sum, s_i, s_w, term.Pi, term.VF, r);
+  }
+};
 
 }  // namespace talus::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

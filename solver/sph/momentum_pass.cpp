@@ -75,8 +75,8 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
   const Kernel kernel(quantum / k.h);
   const ArtificialViscosity<Lanes, Quadratic> viscosity(k, quantum);
   const ReconstructedViscosity<Lanes, Quadratic> reconstructed(k, quantum);
-  const WallLaw<Lanes> wall(k, quantum);
-  const Lanes volume_w(k.dx * k.dx), to_force(-sigma_h2<Kernel>(k.h) * quantum);
+  const WallForce<Lanes, Quadratic, Reconstruct> wall(k, quantum);
+  const Lanes to_force(-sigma_h2<Kernel>(k.h) * quantum);
   const Vector<Lanes> g{Lanes(k.g.x), Lanes(k.g.y)};
   const auto minus_F = [&](Lanes r, Lanes r2) HWY_ATTR { return kernel.minus_F(r, r2); };
   for (std::size_t c = clusters.begin; c < clusters.end; ++c) {
@@ -108,16 +108,11 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
       if constexpr (Measure) powers.add_soil(Pi, VF, v_dot_r);
     };
     const auto add_wall = [&](const Pair& pair) HWY_ATTR {
-      const WallParticle<Lanes> wall_j = wall_particle(f.walls, pair.j);
-      const WallPair<Lanes> w = wall.pair(pair.r, v, wall_j);
-      Lanes VF = volume_w * pair.kernel;
-      if (wall.only_approaching) VF = select_or_zero(w.v_dot_r < Lanes(0.0), VF);
-      const Vector<Lanes> arm = Reconstruct ? across_wall(pair.r, wall_j.normal) : pair.r;
-      const Lanes approach = min(Reconstruct ? dot(w.v_ij, arm) : w.v_dot_r, Lanes(0.0));
-      const Lanes Pi = viscosity(viscosity_of_i, rho, rho, approach, pair.r2);
+      const WallTerm<Lanes> term =
+          wall.term(viscosity_of_i, rho, v, wall_particle(f.walls, pair.j), pair.kernel, pair.r, pair.r2);
       const Symmetric<Lanes> s_w = tensor_of(f.walls.stress, pair.j);
-      sum = Reconstruct ? add_force(sum, s, s_w, Pi, VF, pair.r, arm) : add_force(sum, s, s_w, Pi, VF, pair.r);
-      if constexpr (Measure) powers.add_wall(s, s_w, Pi, VF, v, w.v_ij, pair.r, arm);
+      sum = wall.add(sum, s, s_w, term, pair.r);
+      if constexpr (Measure) powers.add_wall(s, s_w, term.Pi, term.VF, v, term.v_ij, pair.r, term.arm);
     };
     for_neighbours<true>(x, f.soil.motion.data(), neighbours(f.soil_soil, c), minus_F, add_soil);
     for_neighbours<false>(x, f.walls.place.data(), neighbours(f.soil_wall, c), minus_F, add_wall);
@@ -134,21 +129,12 @@ HWY_ATTR void momentum_loop(PackedFlow& f, const FlowConstants& k, Range cluster
 
 void momentum_dispatch(PackedFlow& f, const FlowConstants& k, bool measure, Range clusters) {
   with_kernel<Lanes>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
-    const auto run = [&]<bool Quadratic, bool Reconstruct>() {
+    with_artificial_viscosity(k.numerics, [&]<bool Quadratic, bool Reconstruct>() {
       if (measure)
         momentum_loop<Kernel, Quadratic, Reconstruct, true>(f, k, clusters);
       else
         momentum_loop<Kernel, Quadratic, Reconstruct, false>(f, k, clusters);
-    };
-    const bool quadratic = k.numerics.beta > 0.0, reconstruct = k.numerics.velocity_jump == VelocityJump::reconstructed;
-    if (quadratic && reconstruct)
-      run.template operator()<true, true>();
-    else if (quadratic)
-      run.template operator()<true, false>();
-    else if (reconstruct)
-      run.template operator()<false, true>();
-    else
-      run.template operator()<false, false>();
+    });
   });
 }
 

@@ -201,8 +201,12 @@ void pack_walls(PackedFlow& f, const FlowConstants& k, const WallParticles& wall
     const WallFriction& boundary = k.boundaries[static_cast<std::size_t>(walls.boundary[w])];
     f.walls.slip[w] = slip_code(boundary.slip);
     f.walls.tan_phi[w] = static_cast<float>(boundary.tan_phi);
-    f.walls.c[w] = static_cast<float>(boundary.c);
   }
+  pack_wall_cohesion(f, k, walls);
+}
+
+void pack_wall_cohesion(PackedFlow& f, const FlowConstants& k, const WallParticles& walls) {
+  for (std::size_t w = 0; w < walls.size(); ++w) f.walls.c[w] = static_cast<float>(wall_cohesion(k, walls, w));
 }
 
 }  // namespace talus

@@ -39,6 +39,7 @@ void PackedWalls::resize(std::size_t n) {
   slip.assign(n + padding, 0.0f);
   tan_phi.assign(n + padding, 0.0f);
   c.assign(n + padding, 0.0f);
+  slot.assign(n + padding, -1);
 }
 
 std::vector<std::uint32_t> clusters(const CellList& cells, std::size_t lanes) {

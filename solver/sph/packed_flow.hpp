@@ -55,11 +55,12 @@ struct PackedSoil {
 constexpr float slip_code(WallSlip slip) { return static_cast<float>(slip); }
 
 struct PackedWalls {
-  std::vector<float> place;    ///< x, y [quantum, as integers], nx, ny [-]
-  std::vector<float> stress;   ///< sxx, syy, sxy [Pa], depth [m]
-  std::vector<float> slip;     ///< WallSlip as a number, not grouped
-  std::vector<float> tan_phi;  ///< of the wall's friction angle, infinite where it has none [-], not grouped
-  std::vector<float> c;        ///< of the wall's cohesion, infinite where it has none [Pa], not grouped
+  std::vector<float> place;        ///< x, y [quantum, as integers], nx, ny [-]
+  std::vector<float> stress;       ///< sxx, syy, sxy [Pa], depth [m]
+  std::vector<float> slip;         ///< WallSlip as a number, not grouped
+  std::vector<float> tan_phi;      ///< of the wall's friction angle, infinite where it has none [-], not grouped
+  std::vector<float> c;            ///< of the wall's cohesion, infinite where it has none [Pa], not grouped
+  std::vector<std::int32_t> slot;  ///< of its boundary among those whose load is asked for, else -1; not grouped
   void resize(std::size_t n);
 };
 

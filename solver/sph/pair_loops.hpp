@@ -8,6 +8,7 @@
 #include "sph/flow_constants.hpp"
 #include "sph/packed_flow.hpp"
 #include "sph/step_extrema.hpp"
+#include "sph/wall_load.hpp"
 
 namespace talus {
 
@@ -23,8 +24,10 @@ bool limit_pair_loops(const std::string& name);
 void pack_soil(PackedFlow& f, const FlowConstants& k, const Soil& soil, double ahead, Range range);
 /// Packs what does not change of the soil while its order stays: cohesion and friction.
 void pack_strength(PackedFlow& f, const Soil& soil);
-/// Packs what does not change of all walls: place, normal, depth and friction.
+/// Packs what does not change of all walls: place, normal, depth and friction; and their cohesion.
 void pack_walls(PackedFlow& f, const FlowConstants& k, const WallParticles& walls);
+/// Packs the cohesion of all walls, with what the speed of the flow adds to it.
+void pack_wall_cohesion(PackedFlow& f, const FlowConstants& k, const WallParticles& walls);
 
 /// Which neighbours to list.
 struct NeighbourSearch {
@@ -50,6 +53,12 @@ void wall_stress_pass(PackedFlow& f, const FlowConstants& k, WallParticles& wall
 /// Second pass over some of the soil's clusters: acceleration ([Z20] Eq. 2), gravity included. `measure`: writes the
 /// powers of the artificial viscosity and of the walls.
 void momentum_pass(PackedFlow& f, const FlowConstants& k, bool measure, Range clusters);
+
+/// Load of each of some of the soil's clusters on one boundary, at the state of the last evaluation.
+/// @param slot   of the boundary in PackedWalls::slot; @param about  point of the moment [m]
+/// @param loads  written for these clusters
+void load_pass(const PackedFlow& f, const FlowConstants& k, std::int32_t slot, Vec2 about, Range clusters,
+               WallLoad* loads);
 
 /// Moves soil particles on by dt [s] at the present rates, positions with the velocities of the last evaluation
 /// (`midpoint_velocity`) or with the mean of the old and the new ones, and packs the outcome.

@@ -101,6 +101,7 @@ struct Passes {
 
   double minus_F(double r2) const { return kernel.minus_F(std::sqrt(r2), r2); }
   Symmetric<double> stress(std::size_t i) const { return {soil.sxx[i], soil.syy[i], soil.sxy[i]}; }
+  Symmetric<double> wall_stress(std::size_t j) const { return {walls.sxx[j], walls.syy[j], walls.sxy[j]}; }
   const WallFriction& boundary(std::size_t j) const {
     return k.boundaries[static_cast<std::size_t>(walls.boundary[j])];
   }
@@ -121,6 +122,7 @@ struct Passes {
     const double dynamic_i = dynamic(i);
     auto sums = FlowRateSums<double>::zero();
     MohrCoulomb<double> strength{soil.c[i], soil.tan_phi[i]};
+    const double p_i = wall_law.turbulent ? pressure_of(k, SoilPoint{k, soil, nullptr, i}) : 0.0;
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double VF = volume(j) * minus_F(r2);
       sums.add(VF, density(j), v_i - vector(soil.velocity(j)), r, by_mass);
@@ -131,8 +133,8 @@ struct Passes {
       const WallPair<double> w = wall_law.pair(r, v_i, wall_particle(j));
       if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
       sums.add(walls.volume * minus_F(r2), rho_i, w.v_ij, r, by_mass);
-      const MohrCoulomb<double> of_wall{boundary(j).c, boundary(j).tan_phi};
-      strength = interface_strength(strength, of_wall, w.distance < wall_law.thickness);
+      const MohrCoulomb<double> of_wall{wall_cohesion(k, walls, j), boundary(j).tan_phi};
+      strength = wall_law.strength(strength, of_wall, p_i, w.distance < wall_law.thickness);
     });
     const double to_diffusion = 2.0 * k.numerics.delta * k.h * k.c_s * sigma;
     update_point(k, Model(k.rheology), sums.rates(-sigma, to_diffusion, by_mass, rho_i), strength,
@@ -147,7 +149,8 @@ struct Passes {
     });
     const WallFriction& friction = boundary(w);
     const WallStress<double> wall =
-        sum.value(k, vector(walls.normal(w)), {friction.c, friction.tan_phi}, friction.slip == WallSlip::free_slip);
+        sum.value(k, vector(walls.normal(w)), {wall_cohesion(k, walls, w), friction.tan_phi},
+                  friction.slip == WallSlip::free_slip);
     walls.p[w] = wall.p;
     walls.density_ratio[w] = wall.density_ratio;
     walls.sxx[w] = wall.s.xx;
@@ -155,20 +158,20 @@ struct Passes {
     walls.sxy[w] = wall.s.xy;
   }
 
-  template <bool Quadratic>
+  template <bool Quadratic, bool Reconstruct>
   void update_acceleration(std::size_t i) const {
     const ArtificialViscosity<double, Quadratic> viscosity(k, 1.0);
     const ReconstructedViscosity<double, Quadratic> reconstructed(k, 1.0);
     const Vector<double> v_i = vector(soil.velocity(i));
     const double rho_i = density(i), viscosity_of_i = viscosity.of_particle(rho_i);
     const Symmetric<double> s_i = stress(i), e_i = strain[i];
-    const bool reconstruct = k.numerics.velocity_jump == VelocityJump::reconstructed;
+    const WallForce<double, Quadratic, Reconstruct> wall(k, 1.0);
     Vector<double> sum{0.0, 0.0};
     auto pair_powers = PairPowers<double>::zero();
     for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
       const double v_dot_r = dot(v_i - vector(soil.velocity(j)), r);
       const double twice_smooth = dot((e_i + strain[j]) * r, r) / k.h;
-      const double Pi = reconstruct
+      const double Pi = Reconstruct
                             ? reconstructed(reconstructed.of_particle(rho_i), density(j), v_dot_r, twice_smooth, r2)
                             : viscosity(viscosity_of_i, rho_i, density(j), std::min(v_dot_r, 0.0), r2);
       const double VF = volume(j) * minus_F(r2);
@@ -176,15 +179,10 @@ struct Passes {
       if (powers) pair_powers.add_soil(Pi, VF, v_dot_r);
     });
     for_neighbours(cells.walls, walls, soil.position(i), support2, [&](std::size_t j, Vector<double> r, double r2) {
-      const WallParticle<double> wall_j = wall_particle(j);
-      const WallPair<double> w = wall_law.pair(r, v_i, wall_j);
-      if (wall_law.only_approaching && w.v_dot_r >= 0.0) return;
-      const Vector<double> arm = reconstruct ? across_wall(r, wall_j.normal) : r;
-      const double Pi = viscosity(viscosity_of_i, rho_i, rho_i, std::min(dot(w.v_ij, arm), 0.0), r2);
-      const Symmetric<double> s_w{walls.sxx[j], walls.syy[j], walls.sxy[j]};
-      const double VF = walls.volume * minus_F(r2);
-      sum = reconstruct ? add_force(sum, s_i, s_w, Pi, VF, r, arm) : add_force(sum, s_i, s_w, Pi, VF, r);
-      if (powers) pair_powers.add_wall(s_i, s_w, Pi, VF, v_i, w.v_ij, r, arm);
+      const WallTerm<double> term = wall.term(viscosity_of_i, rho_i, v_i, wall_particle(j), minus_F(r2), r, r2);
+      const Symmetric<double> s_w = wall_stress(j);
+      sum = wall.add(sum, s_i, s_w, term, r);
+      if (powers) pair_powers.add_wall(s_i, s_w, term.Pi, term.VF, v_i, term.v_ij, r, term.arm);
     });
     const Vector<double> a = fma(-sigma / rho_i, sum, vector(k.g));
     soil.ax[i] = a.x;
@@ -193,6 +191,25 @@ struct Passes {
     const double V_to_F = -sigma * volume(i);
     powers->artificial_viscosity[i] = pair_powers.taken_by_viscosity(V_to_F);
     powers->boundaries[i] = pair_powers.taken_by_boundaries(V_to_F);
+  }
+
+  template <bool Quadratic, bool Reconstruct>
+  WallLoad load_on(const LoadedBoundary& loaded) const {
+    const WallForce<double, Quadratic, Reconstruct> force(k, 1.0);
+    WallLoad load;
+    for (std::size_t i = 0; i < soil.n_active; ++i) {
+      const Vec2 x = soil.position(i);
+      for_neighbours(cells.walls, walls, x, support2, [&](std::size_t j, Vector<double> r, double r2) {
+        if (walls.boundary[j] != loaded.boundary) return;
+        const WallTerm<double> term = force.term(force.viscosity.of_particle(density(i)), density(i),
+                                                 vector(soil.velocity(i)), wall_particle(j), minus_F(r2), r, r2);
+        const Vector<double> one = force.add({0.0, 0.0}, stress(i), wall_stress(j), term, r);
+        const Vec2 on_wall = (sigma * volume(i)) * Vec2{one.x, one.y};
+        load.force += on_wall;
+        load.moment += cross(x - 0.5 * Vec2{r.x, r.y} - loaded.about, on_wall);
+      });
+    }
+    return load;
   }
 
   template <class Model>
@@ -206,10 +223,8 @@ struct Passes {
       for (std::size_t w = 0; w < walls.size(); ++w) update_wall_stress(w);
 #pragma omp for schedule(static, grain)
       for (std::size_t i = 0; i < soil.n_active; ++i) {
-        if (k.numerics.beta > 0.0)
-          update_acceleration<true>(i);
-        else
-          update_acceleration<false>(i);
+        with_artificial_viscosity(
+            k.numerics, [&]<bool Quadratic, bool Reconstruct>() { update_acceleration<Quadratic, Reconstruct>(i); });
       }
     }
   }
@@ -283,6 +298,21 @@ void evaluate_plain(const FlowConstants& k, Soil& soil, WallParticles& walls, co
       Passes<Kernel>{k, soil, walls, cells, powers}.template evaluate<Model>();
     });
   });
+}
+
+WallLoad load_on(const FlowConstants& k, const Soil& soil, const WallParticles& walls, const ParticleCells& cells,
+                 const LoadedBoundary& boundary) {
+  WallLoad load;
+  // The passes read soil and walls only here.
+  auto& read_soil = const_cast<Soil&>(soil);
+  auto& read_walls = const_cast<WallParticles&>(walls);
+  with_kernel<double>(k.numerics.kernel, [&]<class Kernel>(std::type_identity<Kernel>) {
+    const Passes<Kernel> passes{k, read_soil, read_walls, cells, nullptr};
+    with_artificial_viscosity(k.numerics, [&]<bool Quadratic, bool Reconstruct>() {
+      load = passes.template load_on<Quadratic, Reconstruct>(boundary);
+    });
+  });
+  return load;
 }
 
 void filter_density(const FlowConstants& k, Soil& soil, const WallParticles& walls, const ParticleCells& cells) {

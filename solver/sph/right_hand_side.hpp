@@ -5,6 +5,7 @@
 #include "particles/particles.hpp"
 #include "sph/flow_constants.hpp"
 #include "sph/powers.hpp"
+#include "sph/wall_load.hpp"
 
 namespace talus {
 
@@ -17,6 +18,10 @@ namespace talus {
 /// @param powers  where not null: filled with the powers of every particle of the active soil
 void evaluate_plain(const FlowConstants& k, Soil& soil, WallParticles& walls, const ParticleCells& cells,
                     ParticlePowers<double>* powers = nullptr);
+
+/// Load of the active soil on a boundary, at the state that evaluate_plain() has evaluated.
+WallLoad load_on(const FlowConstants& k, const Soil& soil, const WallParticles& walls, const ParticleCells& cells,
+                 const LoadedBoundary& boundary);
 
 /// One pass of the Shepard filter over the densities of the active soil.
 void filter_density(const FlowConstants& k, Soil& soil, const WallParticles& walls, const ParticleCells& cells);

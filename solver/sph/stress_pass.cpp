@@ -100,6 +100,7 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
     load_groups(f.soil.density.data() + 4 * i, volume, q, rho, material);
     const ClusterPoint point{f, k, soil, ahead, keep, measure, i, count, volume};
     MohrCoulomb<Lanes> strength{point.c(), point.tan_phi()};
+    const Lanes p = wall.turbulent ? pressure_of(k, point) : Lanes(0.0);
     auto sums = FlowRateSums<Lanes>::zero();
     const auto add_soil = [&](const Pair& pair) HWY_ATTR {
       const float* HWY_RESTRICT motion = f.soil.motion.data() + 4 * pair.j;
@@ -119,7 +120,7 @@ HWY_ATTR void stress_loop(PackedFlow& f, const FlowConstants& k, Soil& soil, dou
       sums.add(select_or_zero(acts, volume_w * pair.kernel), rho, w.v_ij, pair.r, ByMass);
       if (wall.frictional) {
         const MohrCoulomb<Lanes> of_wall{Lanes(f.walls.c[pair.j]), Lanes(f.walls.tan_phi[pair.j])};
-        strength = interface_strength(strength, of_wall, acts & (w.distance < wall.thickness));
+        strength = wall.strength(strength, of_wall, p, acts & (w.distance < wall.thickness));
       }
     };
     for_neighbours<true>(x, f.soil.motion.data(), neighbours(f.soil_soil, c), minus_F, add_soil);

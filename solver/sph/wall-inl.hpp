@@ -57,6 +57,13 @@ template <class Real, class Mask>
 HWY_INLINE MohrCoulomb<Real> interface_strength(MohrCoulomb<Real> soil, MohrCoulomb<Real> wall, Mask within) {
   return {select(within, min(soil.c, wall.c), soil.c), select(within, min(soil.tan_phi, wall.tan_phi), soil.tan_phi)};
 }
+/// The weaker of both by the stress at which it yields under the pressure p: c + p tan(phi) of the result is the
+/// smaller one of the two, whatever their terms (FlowConstants: has_turbulent_walls).
+template <class Real>
+HWY_INLINE MohrCoulomb<Real> weaker_strength(MohrCoulomb<Real> soil, MohrCoulomb<Real> wall, Real p) {
+  const Real tan_phi = min(soil.tan_phi, wall.tan_phi), bearing = max(p, Real(0.0));
+  return {min(fma(bearing, soil.tan_phi - tan_phi, soil.c), fma(bearing, wall.tan_phi - tan_phi, wall.c)), tan_phi};
+}
 /// [m]; wide enough to hold most of what the kernel sees from the wall: one row of particles at h = 1.2 dx, two at 1.5
 /// dx.
 inline double interface_thickness(double h) { return 1.1 * h; }
@@ -68,6 +75,7 @@ struct WallLaw {
   Real unit;   ///< of the distances [m]
   bool only_approaching;
   bool frictional;  ///< a boundary has a strength of its own
+  bool turbulent;   ///< a boundary has a turbulence coefficient
   Real thickness;   ///< of the interface layer [m]
 
   /// @param metres  unit of the distances [m]
@@ -77,7 +85,16 @@ struct WallLaw {
         only_approaching(k.walls.contact == WallContact::approaching),
         frictional(
             std::ranges::any_of(k.boundaries, [](const WallFriction& b) { return b.slip == WallSlip::friction; })),
+        turbulent(has_turbulent_walls(k.boundaries)),
         thickness(interface_thickness(k.h)) {}
+
+  /// Strength of soil near a wall particle. @param p  pressure of the soil [Pa], used with a turbulence coefficient
+  template <class Mask>
+  HWY_INLINE MohrCoulomb<Real> strength(MohrCoulomb<Real> soil, MohrCoulomb<Real> wall, Real p, Mask within) const {
+    if (!turbulent) return interface_strength(soil, wall, within);
+    const MohrCoulomb<Real> weaker = weaker_strength(soil, wall, p);
+    return {select(within, weaker.c, soil.c), select(within, weaker.tan_phi, soil.tan_phi)};
+  }
 
   HWY_INLINE WallPair<Real> pair(Vector<Real> r_ij, Vector<Real> v_i, const WallParticle<Real>& j) const {
     const Real distance = fms(unit, dot(r_ij, j.normal), j.depth);
@@ -173,7 +190,8 @@ struct WallStressSum {
     const Real share = inverse * select(smooth, Real(1.0), growth);
     Symmetric<Real> s{fms(t.xx, share, p_wall), fms(t.yy, share, p_wall), t.xy * share};
     if (any(smooth)) s = select(smooth, mirrored(s, normal), s);
-    const MohrCoulomb<Real> both{min(soil.c, of_wall.c), min(soil.tan_phi, of_wall.tan_phi)};
+    MohrCoulomb<Real> both{min(soil.c, of_wall.c), min(soil.tan_phi, of_wall.tan_phi)};
+    if (has_turbulent_walls(k.boundaries)) both = weaker_strength(soil, of_wall, p_wall);
     const Real limit = yield(both, p_wall);
     const auto weaker = limit < yield(soil, p_wall);
     if (any(weaker)) s = select(weaker, with_bounded_shear(s, normal, limit), s);

@@ -1,5 +1,6 @@
 #include "study/plan.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 #include "support/files.hpp"
@@ -14,22 +15,69 @@ namespace fs = std::filesystem;
 constexpr const char* plan_name = "plan.json";
 constexpr const char* sampling_names[] = {"monte_carlo", "latin_hypercube"};
 
+Json targets_json(const std::vector<TargetName>& targets) {
+  Json all = Json::array();
+  for (const TargetName& target : targets) all.push_back({{"name", target.name}, {"kind", word(target.kind)}});
+  return all;
+}
+
+/// Plans of earlier versions, and those without targets, have none.
+std::vector<TargetName> targets_of(const Json& plan) {
+  std::vector<TargetName> targets;
+  for (const Json& target : plan.value("targets", Json::array())) {
+    const auto kind = std::ranges::find(target_kind_words, target.at("kind").get<std::string>());
+    if (kind == target_kind_words.end()) throw IoError("a target is of an unknown kind");
+    targets.push_back({target.at("name"), static_cast<TargetKind>(kind - target_kind_words.begin())});
+  }
+  return targets;
+}
+
+/// A threshold in a plan: its key and its member.
+constexpr std::pair<const char*, std::optional<double> HazardClass::*> thresholds[] = {
+    {"depth_m", &HazardClass::depth},
+    {"speed_m_s", &HazardClass::speed},
+    {"dynamic_pressure_Pa", &HazardClass::dynamic_pressure}};
+
+Json classes_json(const std::vector<HazardClass>& classes) {
+  Json all = Json::array();
+  for (const HazardClass& one : classes) {
+    Json& json = all.emplace_back(Json{{"name", one.name}});
+    for (const auto& [key, member] : thresholds)
+      if (one.*member) json[key] = *(one.*member);
+  }
+  return all;
+}
+
+std::vector<HazardClass> classes_of(const Json& plan) {
+  std::vector<HazardClass> classes;
+  for (const Json& json : plan.value("hazard_classes", Json::array())) {
+    HazardClass& one = classes.emplace_back(HazardClass{.name = json.at("name")});
+    for (const auto& [key, member] : thresholds)
+      if (json.contains(key)) one.*member = json.at(key).get<double>();
+  }
+  return classes;
+}
+
 Json to_json(const Plan& plan) {
-  return {{"program", "talus"},
-          {"version", plan.version},
-          {"title", plan.title},
-          {"case_hash", plan.of.hash},
-          {"case_hash_without_end", plan.of.hash_without_end},
-          {"end_s", plan.of.end},
-          {"earlier_case_hashes", plan.earlier},
-          {"seed", plan.seed},
-          {"realizations", plan.study.realizations},
-          {"sampling", sampling_names[static_cast<int>(plan.study.sampling)]},
-          {"stratified_modes", plan.study.stratified_modes},
-          {"noise_floor_replicates", plan.study.noise_floor_replicates},
-          {"stop_when_ci_half_width_below_m", plan.study.stop_half_width ? Json(*plan.study.stop_half_width) : Json()},
-          {"max_failed_share", plan.study.max_failed_share},
-          {"histogram_edges_m", plan.study.histogram_edges}};
+  Json json = {
+      {"program", "talus"},
+      {"version", plan.version},
+      {"title", plan.title},
+      {"case_hash", plan.of.hash},
+      {"case_hash_without_end", plan.of.hash_without_end},
+      {"end_s", plan.of.end},
+      {"earlier_case_hashes", plan.earlier},
+      {"seed", plan.seed},
+      {"realizations", plan.study.realizations},
+      {"sampling", sampling_names[static_cast<int>(plan.study.sampling)]},
+      {"stratified_modes", plan.study.stratified_modes},
+      {"noise_floor_replicates", plan.study.noise_floor_replicates},
+      {"stop_when_ci_half_width_below_m", plan.study.stop_half_width ? Json(*plan.study.stop_half_width) : Json()},
+      {"max_failed_share", plan.study.max_failed_share},
+      {"histogram_edges_m", plan.study.histogram_edges}};
+  if (!plan.study.hazard_classes.empty()) json["hazard_classes"] = classes_json(plan.study.hazard_classes);
+  if (!plan.targets.empty()) json["targets"] = targets_json(plan.targets);
+  return json;
 }
 
 Plan from_json(const Json& json) {
@@ -40,6 +88,7 @@ Plan from_json(const Json& json) {
             .version = json.at("version"),
             .seed = json.at("seed"),
             .study = {},
+            .targets = targets_of(json),
             .earlier = json.value("earlier_case_hashes", std::vector<std::string>())};
   StudySpec& study = plan.study;
   study.realizations = json.at("realizations");
@@ -50,6 +99,7 @@ Plan from_json(const Json& json) {
     study.stop_half_width = json.at("stop_when_ci_half_width_below_m").get<double>();
   study.max_failed_share = json.at("max_failed_share");
   study.histogram_edges = json.at("histogram_edges_m").get<std::vector<double>>();
+  study.hazard_classes = classes_of(json);
   return plan;
 }
 

@@ -9,11 +9,21 @@
 #include <vector>
 
 #include "support/output_directory.hpp"
+#include "support/targets.hpp"
 
 namespace talus {
 
 /// What a Monte Carlo study asks for.
 enum class Sampling { monte_carlo, latin_hypercube };
+
+/// How bad the flow at a target is, by thresholds that a user sets.
+struct HazardClass {
+  std::string name;
+  std::optional<double> depth = {};             ///< least peak depth [m], > 0; unset: any
+  std::optional<double> speed = {};             ///< least peak speed [m/s], > 0; unset: any
+  std::optional<double> dynamic_pressure = {};  ///< least peak dynamic pressure [Pa], > 0; unset: any
+  bool operator==(const HazardClass&) const = default;
+};
 
 struct StudySpec {
   std::int64_t realizations = 100;    ///< planned, >= 1
@@ -24,6 +34,7 @@ struct StudySpec {
   std::optional<double> stop_half_width;  ///< stop once the 95 % interval of the mean influence zone is this narrow [m]
   double max_failed_share = 0.1;          ///< more failures than this end the study with exit code 7, in [0, 1]
   std::vector<double> histogram_edges;    ///< [m], increasing; empty: chosen from the data at round numbers
+  std::vector<HazardClass> hazard_classes = {};  ///< from the weakest to the strongest
   bool operator==(const StudySpec&) const = default;
 };
 
@@ -33,6 +44,7 @@ struct Plan {
   std::string version;  ///< of the program that runs it
   std::uint64_t seed = 0;
   StudySpec study;                        ///< `study.seed` is not used
+  std::vector<TargetName> targets = {};   ///< of the case, in its order
   std::vector<std::string> earlier = {};  ///< hashes of the case with earlier ends, whose runs at rest are kept
 };
 

@@ -35,10 +35,29 @@ std::vector<std::string> column_names(const std::string& index_name) {
   return names;
 }
 
-std::string csv_header(const std::string& index_name) {
+/// The columns of a target, in order.
+std::vector<std::string> target_columns(const TargetName& target) {
+  std::vector<std::string> names{target.name + "." + arrives_key, target.name + "." + open_key};
+  for (const TargetNumber& number : target_numbers)
+    if (has_number(target.kind, number)) names.push_back(target.name + "." + number.key);
+  return names;
+}
+
+std::string csv_header(const std::string& index_name, const std::vector<TargetName>& targets) {
+  std::vector<std::string> names = column_names(index_name);
+  for (const TargetName& target : targets)
+    for (const std::string& name : target_columns(target)) names.insert(names.end() - 1, name);
   std::string line;
-  for (const std::string& name : column_names(index_name)) line += (line.empty() ? "" : ",") + name;
+  for (const std::string& name : names) line += (line.empty() ? "" : ",") + name;
   return line + "\n";
+}
+
+/// Whether a column belongs to a target: "house.peak_depth_m".
+bool is_of_target(const std::string& column) {
+  const std::size_t dot = column.rfind('.');
+  if (dot == std::string::npos || dot == 0) return false;
+  const std::string key = column.substr(dot + 1);
+  return key == arrives_key || key == open_key || find_target_number(key) != nullptr;
 }
 
 /// Where the columns of a table stand, from its header. A table of an earlier version lacks those added later.
@@ -49,7 +68,9 @@ class Columns {
   Columns(const std::vector<std::string>& header, const std::string& index_name, const Fail& fail) : header_(header) {
     const std::vector<std::string> known = column_names(index_name);
     for (std::size_t i = 0; i < header.size(); ++i) {
-      if (std::ranges::find(known, header[i]) == known.end())
+      if (header[i].ends_with(std::string(".") + arrives_key))
+        targets_.push_back({header[i].substr(0, header[i].rfind('.')), TargetKind::point});
+      else if (std::ranges::find(known, header[i]) == known.end() && !is_of_target(header[i]))
         fail("the column " + in_quotes(header[i]) + " is unknown" + suggestion(header[i], known));
       if (!at_.emplace(header[i], i).second) fail("the column " + in_quotes(header[i]) + " stands there twice");
     }
@@ -58,11 +79,19 @@ class Columns {
           name != checksum_column)
         fail("the column " + in_quotes(name) + " is missing");
     index_ = at_.at(index_name);
+    for (TargetName& target : targets_) {
+      const TargetName loaded{target.name, TargetKind::structure};
+      if (at_.contains(target_columns(loaded).back())) target.kind = TargetKind::structure;
+      for (const std::string& name : target_columns(target))
+        if (!at_.contains(name)) fail("the column " + in_quotes(name) + " is missing");
+    }
   }
 
   std::size_t size() const { return header_.size(); }
   const std::string& name(std::size_t at) const { return header_[at]; }
   std::size_t index() const { return index_; }
+  /// Of the columns "NAME.arrives", in their order; a stretch looks like a point.
+  const std::vector<TargetName>& targets() const { return targets_; }
   /// The place of a column; unset where the table lacks it.
   std::optional<std::size_t> find(std::string_view name) const {
     const auto found = at_.find(name);
@@ -71,6 +100,7 @@ class Columns {
 
  private:
   std::vector<std::string> header_;
+  std::vector<TargetName> targets_;
   std::size_t index_ = 0;
   std::map<std::string, std::size_t, std::less<>> at_;
 };
@@ -113,6 +143,21 @@ Record record(const std::vector<std::string>& fields, const Columns& columns, co
     else
       number(*at, value);
   });
+  const auto flag = [&](const std::string& name, bool& value) {
+    const std::string cell = text(name.c_str());
+    if (cell != "0" && cell != "1") fail(name + " is neither 0 nor 1");
+    value = cell == "1";
+  };
+  for (const TargetName& of : columns.targets()) {
+    TargetOutcome& target = r.targets.emplace_back(TargetOutcome{.of = of});
+    flag(of.name + "." + arrives_key, target.arrives);
+    flag(of.name + "." + open_key, target.open);
+    for (const TargetNumber& of_target : target_numbers) {
+      if (!has_number(of.kind, of_target)) continue;
+      const std::size_t at = *columns.find(of.name + "." + of_target.key);
+      if (!fields[at].empty() || !of_target.optional) number(at, target.*of_target.member);
+    }
+  }
   r.digest = text("digest");
   r.objections = text("verdict_reasons");
   r.lower_bounds = text("lower_bounds");
@@ -124,8 +169,8 @@ Record record(const std::vector<std::string>& fields, const Columns& columns, co
 }
 
 /// A line of a table with the hash of what stands before it as its last field.
-std::string line_with_checksum(const Record& record) {
-  std::string line = csv_line(record);
+std::string line_with_checksum(const Record& record, const std::vector<TargetName>& targets) {
+  std::string line = csv_line(record, targets);
   line.pop_back();
   return line + ',' + hex_digits(fnv1a64(line)) + '\n';
 }
@@ -173,8 +218,18 @@ void compare(const Plan& a, const Plan& b, const fs::path& first, const fs::path
 
 }  // namespace
 
-std::string csv_line(const Record& record) {
-  std::string numbers, later;
+std::string csv_line(const Record& record, const std::vector<TargetName>& targets) {
+  std::string numbers, later, of_targets;
+  for (const TargetOutcome& target : record.targets) {
+    of_targets += std::string(target.arrives ? ",1" : ",0") + (target.open ? ",1" : ",0");
+    for (const TargetNumber& number : target_numbers) {
+      if (!has_number(target.of.kind, number)) continue;
+      const double value = target.*number.member;
+      of_targets += ',' + (std::isnan(value) ? "" : to_text(value));
+    }
+  }
+  if (record.targets.empty())  // it failed
+    for (const TargetName& target : targets) of_targets.append(target_columns(target).size(), ',');
   visit_numbers(record, [&](const char* key, const char*, auto value) {
     std::string& cells = is_later(key) ? later : numbers;
     cells += ',';
@@ -183,7 +238,7 @@ std::string csv_line(const Record& record) {
   const char* verdict = record.verdict == Verdict::not_assessed ? "" : word(record.verdict);
   return std::to_string(record.index) + (record.done ? ",done" : ",failed") + numbers + ',' + record.digest + ',' +
          csv_quoted(record.reason) + ',' + verdict + ',' + csv_quoted(record.objections) + ',' +
-         csv_quoted(record.lower_bounds) + later + '\n';
+         csv_quoted(record.lower_bounds) + later + of_targets + '\n';
 }
 
 std::vector<Record> read_csv(const fs::path& path, const std::string& index_name) {
@@ -209,14 +264,14 @@ std::vector<Record> read_csv(const fs::path& path, const std::string& index_name
 StudySummary publish(const StudyPaths& paths, const Plan& plan, const RecordSource& runs, const RecordSource& floor) {
   StudySummary summary(plan);
   AtomicFile realizations(paths.realizations()), noise_floor(paths.noise_floor());
-  realizations.write(csv_header(of_realizations));
+  realizations.write(csv_header(of_realizations, plan.targets));
   runs([&](const Record& r) {
-    if (summary.add(r)) realizations.write(line_with_checksum(r));
+    if (summary.add(r)) realizations.write(line_with_checksum(r, plan.targets));
   });
-  noise_floor.write(csv_header(of_replicates));
+  noise_floor.write(csv_header(of_replicates, plan.targets));
   floor([&](const Record& r) {
     summary.add_replicate(r);
-    noise_floor.write(line_with_checksum(r));
+    noise_floor.write(line_with_checksum(r, plan.targets));
   });
   realizations.commit();
   noise_floor.commit();

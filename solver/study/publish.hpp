@@ -21,7 +21,8 @@ namespace talus {
 std::vector<Record> read_csv(const std::filesystem::path& path, const std::string& index_name);
 
 /// The line of a record in these tables, without its checksum.
-std::string csv_line(const Record& record);
+/// @param targets  of the study: columns that a failed run leaves empty
+std::string csv_line(const Record& record, const std::vector<TargetName>& targets = {});
 
 /// Takes a record.
 using RecordSink = std::function<void(const Record&)>;

@@ -31,6 +31,24 @@ void read_quality(const Json& json, Record& record) {
   record.objections = objections_text(quality);
 }
 
+/// The targets of a result, or those that the queue keeps.
+TargetOutcome target_of(const Json& json) {
+  TargetOutcome target;
+  target.of.name = json.at("name");
+  const auto kind = std::ranges::find(target_kind_words, json.at("kind").get<std::string>());
+  if (kind == target_kind_words.end()) throw IoError("unknown kind of target");
+  target.of.kind = static_cast<TargetKind>(kind - target_kind_words.begin());
+  json.at(arrives_key).get_to(target.arrives);
+  json.at(open_key).get_to(target.open);
+  for (const TargetNumber& number : target_numbers) {
+    if (!has_number(target.of.kind, number)) continue;
+    if (const Json& value = json.at(number.key); !value.is_null() || !number.optional)
+      value.get_to(target.*number.member);
+    if (std::abs(target.*number.member) > largest_number) throw IoError("a number that no run has");
+  }
+  return target;
+}
+
 constexpr const char* snapshots_ending = ".vtkhdf";
 
 /// FNV-1a of a file's content. @throws IoError
@@ -76,6 +94,25 @@ bool may_be_missing(std::string_view key) {
   return is_later(key) || (find_measure(key) && key != measure_table[0].key);
 }
 
+std::vector<TargetOutcome> read_outcomes(const Json& list) {
+  std::vector<TargetOutcome> targets;
+  for (const Json& target : list) targets.push_back(target_of(target));
+  return targets;
+}
+
+Json outcomes_json(const std::vector<TargetOutcome>& targets) {
+  Json list = Json::array();
+  for (const TargetOutcome& target : targets) {
+    Json& json = list.emplace_back(Json{{"name", target.of.name}, {"kind", word(target.of.kind)}});
+    json[arrives_key] = target.arrives;
+    json[open_key] = target.open;
+    for (const TargetNumber& number : target_numbers)
+      if (has_number(target.of.kind, number))
+        json[number.key] = std::isnan(target.*number.member) ? Json() : Json(target.*number.member);
+  }
+  return list;
+}
+
 std::string reason_of_invalid(const std::string& objections) { return std::string(invalid) + objections; }
 
 Record failed_record(std::int64_t index, std::string reason) {
@@ -102,6 +139,7 @@ std::optional<Record> read_result(const fs::path& file, const RunKey& key, const
     json.at("digest").get_to(record.digest);
     for (const Json& measure : json.value("lower_bounds", Json::array()))
       record.lower_bounds += (record.lower_bounds.empty() ? "" : " ") + measure.get<std::string>();
+    record.targets = read_outcomes(json.value("targets", Json::array()));
     const bool interrupted = json.at("ending") == "interrupted";
     const auto hash = json.at("provenance").at("case_hash").get<std::string>();
     const bool earlier = std::ranges::find(of.earlier, hash) != of.earlier.end();

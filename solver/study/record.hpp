@@ -12,8 +12,10 @@
 
 #include "study/run_key.hpp"
 #include "support/error.hpp"
+#include "support/json.hpp"
 #include "support/measures.hpp"
 #include "support/quality.hpp"
+#include "support/targets.hpp"
 
 namespace talus {
 
@@ -33,7 +35,8 @@ struct Record {
   std::string lower_bounds = {};  ///< keys of the measures that are lower bounds, separated by blanks
   std::string reason = {};        ///< why it failed, one line; empty if done
   Verdict verdict = Verdict::not_assessed;
-  std::string objections = {};  ///< objections_text() of the result's quality
+  std::string objections = {};              ///< objections_text() of the result's quality
+  std::vector<TargetOutcome> targets = {};  ///< in the order of the case
 
   /// Whether soil that left the terrain makes a lower bound of this measure.
   bool is_lower_bound(const Measure& measure) const;
@@ -83,6 +86,11 @@ void visit_numbers(AnyRecord& record, const Use& use) {
 inline constexpr double largest_number = 1e12;
 /// More realizations than a study can have.
 inline constexpr std::int64_t end_of_indices = 1'000'000'000;
+
+/// The targets in the list of a result.json, and the list.
+/// @throws IoError, Json::exception where it is not one
+std::vector<TargetOutcome> read_outcomes(const Json& list);
+Json outcomes_json(const std::vector<TargetOutcome>& targets);
 
 /// Why a run failed.
 struct Failure {

@@ -100,6 +100,13 @@ Json notes_json(const Plan& plan) {
       {"noise_floor",
        "realization 0 and its replicates with tan(phi) scaled by 1 + 1e-6 k; a stdev near its noise_floor_stdev is "
        "numerics"}};
+  if (!plan.targets.empty())
+    notes["targets"] =
+        "reached: k of n realizations reached the target; numbers: of the runs that reached it, and exceedance over "
+        "all "
+        "runs, where a target that is not reached has nothing; of arrival_s the probability to arrive by x. lo is "
+        "Wilson's 95 % lower bound for k of n, hi the upper bound with all failed and undecided runs added to k; a run "
+        "is undecided (open) whose soil still moved when it ended, so that it may yet reach the target or load it more";
   if (is_hypercube(plan))
     notes["sampling"] =
         "Latin hypercube on the leading modes: the draws are not independent, so no interval here is exact; that of "
@@ -165,6 +172,9 @@ bool StudySummary::add(const Record& record) {
     samples_[k].push_back(value);
     if (record.is_lower_bound(measure_table[k])) censored_[k].push_back(value);
   }
+  for (std::size_t k = 0; k < targets_.size(); ++k)
+    if (k < record.targets.size() && record.targets[k].of.name == plan_.targets[k].name)
+      targets_[k].push_back(record.targets[k]);
   phi_.push_back(record.mean_phi_deg);
   wall_clock_ += record.wall_clock;
   steps_ += record.steps;
@@ -189,6 +199,10 @@ MeasureSample StudySummary::sample(const Measure& measure) const {
           .failed = failed(),
           .quality = quality_.counts(),
           .complete = missing_.empty() && next_ >= until()};
+}
+
+TargetSample StudySummary::target_sample(std::size_t target) const {
+  return {.of = plan_.targets[target], .outcomes = targets_[target], .failed = failed()};
 }
 
 Json StudySummary::realizations_json() const {
@@ -240,6 +254,8 @@ Json StudySummary::json() const {
     const MeasureSample of = sample(*measure);
     study["quantities"][measure->key] = quantity_json(of, sorted(of.values), given_edges(plan_, *measure));
   }
+  for (std::size_t k = 0; k < targets_.size(); ++k)
+    study["targets"].push_back(target_json(target_sample(k), plan_.study.hazard_classes));
   study["front_thickness_m"] = json_of(front_thickness_);
   study["captured_variance"] = json_of(captured_variance_);
   study["mean_friction_angle_deg"] = mean_phi_json();

@@ -11,6 +11,7 @@
 #include "study/plan.hpp"
 #include "study/quality_summary.hpp"
 #include "study/record.hpp"
+#include "study/target_summary.hpp"
 #include "support/json.hpp"
 #include "support/measures.hpp"
 
@@ -31,7 +32,8 @@ struct MeasureSample {
 /// and realization, and the reasons of failures; the time is that of sorting each measure once.
 class StudySummary {
  public:
-  explicit StudySummary(const Plan& plan) : plan_(plan), stop_(plan.study.stop_half_width) {}
+  explicit StudySummary(const Plan& plan)
+      : plan_(plan), stop_(plan.study.stop_half_width), targets_(plan.targets.size()) {}
 
   /// The next realization, in order of index.
   /// @return false where the study ended before it (StopRule): it is not counted
@@ -42,6 +44,8 @@ class StudySummary {
   /// The content of study.json.
   Json json() const;
   MeasureSample sample(const Measure& measure) const;
+  /// @param target  index into Plan::targets
+  TargetSample target_sample(std::size_t target) const;
 
   std::int64_t done() const { return static_cast<std::int64_t>(phi_.size()); }
   std::int64_t failed() const { return static_cast<std::int64_t>(failures_.size()); }
@@ -61,6 +65,7 @@ class StudySummary {
   StopRule stop_;
   std::array<std::vector<double>, measure_table.size()> samples_;   ///< of the done ones, in order of index
   std::array<std::vector<double>, measure_table.size()> censored_;  ///< of samples_, the lower bounds
+  std::vector<std::vector<TargetOutcome>> targets_;                 ///< by target, of the done ones, in order of index
   std::vector<double> phi_;                                         ///< mean friction angles [deg]
   QualitySummary quality_;
   Json failures_ = Json::array();

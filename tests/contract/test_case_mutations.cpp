@@ -157,6 +157,7 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   mutations.spoil(example("surfaces"));
   mutations.spoil(example("joined"));
   mutations.spoil(example("mu-i"));
+  mutations.spoil(example("soil"));
   // The forms that the examples do not hold: the other file, the other step.
   json other = example("surfaces");
   other["slide"] = {{"ground_surface_m", {{0, 20}, {6, 20}, {24, 6}}}, {"slip_surface_csv", "case-bed.csv"}};
@@ -170,8 +171,43 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
     (*material)["mu_i"] = {{"high_rate_friction_angle_deg", 40}, {"grain_diameter_mm", 3}};
   }
   mutations.spoil(other);
+  const json drained_softening = {{"residual_cohesion_Pa", 0}, {"displacement_m", 0.1}, {"band_width_m", 2}};
+  other["material"] = {{"density_kg_m3", 1800},
+                       {"undrained_strength_kPa", 20},
+                       {"undrained_strength_gradient_kPa_m", 1},
+                       {"softening", {{"residual_undrained_strength_kPa", 5}, {"plastic_shear_strain", 0.1}}}};
+  other["slide"]["outlines"][0]["material"] = {{"friction_angle_deg", 20}, {"softening", drained_softening}};
+  mutations.spoil(other);
+  other["material"] = {{"density_kg_m3", 1800},
+                       {"friction_angle_deg", 20},
+                       {"cohesion_kPa", 2},
+                       {"r_u", 0.1},
+                       {"softening", drained_softening}};
+  other["slide"]["outlines"][0]["material"] = {
+      {"undrained_strength_Pa", 2e4},
+      {"softening", {{"residual_undrained_strength_Pa", 5e3}, {"displacement_m", 0.1}}}};
+  mutations.spoil(other);
+  other["material"]["softening"] = {{"residual_cohesion_kPa", 0}, {"displacement_m", 0.1}};
+  other["material"].erase("r_u");
+  other["slide"]["outlines"][0].erase("material");
+  mutations.spoil(other);
+  other["material"] = {{"density_kg_m3", 1800},
+                       {"undrained_strength_Pa", 2e4},
+                       {"softening", {{"residual_undrained_strength_Pa", 5e3}, {"displacement_m", 0.1}}}};
+  mutations.spoil(other);
+  other = example("joined");
+  other["water"] = {{"phreatic_line_csv", "case-bed.csv"}};
+  mutations.spoil(other);
   other = example("joined");
   other["terrain"] = {{"ground_beyond_csv", "case-bed.csv"}};
+  mutations.spoil(other);
+  other = example("targets");
+  mutations.spoil(other);
+  const json structures = {other["targets"][3], other["targets"][4]};
+  other["targets"] = structures;
+  mutations.spoil(other);
+  other["targets"] = {{{"name", "dam"}, {"structure", {{"outline_csv", "case-outline.csv"}}}}};
+  other["study"]["hazard_classes"] = {{{"name", "high"}, {"dynamic_pressure_Pa", 1e4}, {"speed_m_s", 2}}};
   mutations.spoil(other);
   std::set<std::string> keys;
   collect(test::SchemaCheck("case").document(), "", keys);

@@ -61,10 +61,9 @@ TEST(CaseSchema, ClosesEveryObject) {
 TEST(CaseSchema, UnitsStandInTheKeys) {
   const test::SchemaCheck schema("case");
   const std::pair<const char*, const char*> suffixes[] = {
-      {"_kg_m3", "kg/m3"}, {"_m_s2", "m/s2"}, {"_m_s", "m/s"},           {"_Pa_s", "Pa s"},
-      {"_Pa", "Pa"},       {"_deg", "deg"},   {"_1_s", "1/s"},           {"_mm", "mm"},
-      {"_kN_m3", "kN/m3"}, {"_kPa", "kPa"},   {"_spacings", "spacings"}, {"_m", "m"},
-      {"_s", "s"},         {"", "-"}};
+      {"_kg_m3", "kg/m3"},       {"_m_s2", "m/s2"},   {"_m_s", "m/s"}, {"_Pa_s", "Pa s"},   {"_Pa", "Pa"},
+      {"_deg", "deg"},           {"_1_s", "1/s"},     {"_mm", "mm"},   {"_kN_m3", "kN/m3"}, {"_kPa", "kPa"},
+      {"_spacings", "spacings"}, {"_kPa_m", "kPa/m"}, {"_m", "m"},     {"_s", "s"},         {"", "-"}};
   for_each_key(schema.document(), "", [&](const std::string& pointer, const json& key, bool) {
     if (key["type"] != "number") return;
     for (const auto& [suffix, unit] : suffixes)
@@ -84,6 +83,7 @@ TEST(CaseSchema, DefaultsAreTheReaders) {
   document["time"]["stop_at_rest"] = true;
   document["material"]["mu_i"] = {{"high_rate_friction_angle_deg", 40}, {"grain_diameter_m", 0.002}};
   document["slide"]["outlines"][0]["material"]["mu_i"] = document["material"]["mu_i"];
+  document["water"] = {{"phreatic_line_m", {{-1e4, -1e3}, {1e4, -1e3}}}};
   const json switched_on = json::parse(load_case(document, "").resolved.dump());
   document["particle_lattice"] = {{"angle_deg", 30}};
   const json turned = json::parse(load_case(document, "").resolved.dump());

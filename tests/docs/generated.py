@@ -122,7 +122,7 @@ def plain(number):
 
 
 def soil_types(talus):
-    """What `talus validate` proposes for a slope that states no rate dependence."""
+    """What `talus validate` proposes for a slope that states no rate dependence, and what it knows of strengths."""
     case = {"title": "slope", "particle_spacing_m": 0.5, "terrain": {"bed_m": [[0, 4], [8, 0], [60, 0]]},
             "slide": {"outlines": [{"outline_m": [[0, 4], [8, 0], [10, 0], [4, 7], [0, 7]]}]},
             "material": {"density_kg_m3": 2000, "friction_angle_deg": 25}, "time": {"end_s": 3}}
@@ -131,7 +131,8 @@ def soil_types(talus):
         path.write_text(json.dumps(case))
         done = subprocess.run([talus, "validate", path, "--json"], check=True, capture_output=True, text=True)
     lines = ["", "| soil | value | range | source |", "|---|---|---|---|"]
-    for soil in json.loads(done.stdout)["rate_dependence_by_soil"]:
+    report = json.loads(done.stdout)
+    for soil in report["rate_dependence_by_soil"]:
         if "mu_i" in soil:
             mu_i = soil["mu_i"]
             value = (f"mu(I), mu_2 - mu_s = {plain(mu_i['friction_rise'])}, "
@@ -142,6 +143,11 @@ def soil_types(talus):
             value = f"{plain(soil['viscosity_Pa_s'])} Pa s"
             spread = f"{plain(low)} to {plain(high)} Pa s" if low < high else "one value"
         lines.append(f"| {soil['soil']} | {value} | {spread} | {soil['source']} |")
+    lines += ["", "| soil | key | value | source |", "|---|---|---|---|"]
+    for soil in report["strength_by_soil"]:
+        low, high = soil["range"]
+        value = f"{plain(low)} to {plain(high)}" if low < high else plain(low)
+        lines.append(f"| {soil['soil']} | `{soil['key']}` | {value} | {soil['source']} |")
     return lines + [""]
 
 

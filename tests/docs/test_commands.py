@@ -39,6 +39,8 @@ ELSEWHERE = {
     "mv data old && cp -r backup data": "tests/service/test_keeping.py",
     "mkdir -p data/orphans && cp -r old/jobs/ID data/orphans/": "tests/service/test_keeping.py",
     "talusd --data data --adopt": "tests/service/test_keeping.py",
+    "talus stats road --at 45 --at name=road": "tests/solver/cli/test_targets.py",
+    "talus compare without with": "tests/solver/cli/test_targets.py",
     "deploy/demo.sh": "tests/deploy/test_package.py",
     "tests/run.sh": ".ci/run",
     "cmake --build --preset release && (cd build/release && cpack -G DEB)": "deploy/Dockerfile",

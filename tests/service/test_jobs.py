@@ -50,6 +50,30 @@ class Ours(ServiceTest):
         ):
             self.problem(self.daemon.get(f"/jobs/{job}/histogram?{query}"), 400)
 
+    def test_exceedance_is_what_stats_says(self):
+        case = study(6)
+        case["inputs"]["case"]["targets"] = [{"name": "near", "point_m": [22]}, {"name": "far", "point_m": [55]}]
+        job = self.daemon.submit(case)
+        self.daemon.wait_for(job)
+        path = f"/jobs/{job}/exceedance"
+        fronts = [run["measures"]["front_mass_99_m"] for run in self.daemon.get(f"/jobs/{job}/realizations").json["realizations"]]
+        x = sorted(fronts)[2]
+        front = self.daemon.get(f"{path}?quantity=front_mass_99_m&x={x!r}").json
+        self.assertEqual((front["k"], front["n"], front["failed"]), (3, 6, 0))
+        far = self.daemon.get(f"{path}?quantity=far").json
+        self.assertEqual((far["k"], far["n"], far["lo"]), (0, 6, 0))
+        directory = self.daemon.data / "jobs" / job
+        for query, arguments in (
+            (f"quantity=front_mass_99_m&x={x!r}", ["--at", repr(x)]),
+            ("quantity=far", ["--at", "name=far"]),
+            ("quantity=near.peak_depth_m&x=0.5", ["--quantity", "near.peak_depth_m", "--at", "0.5"]),
+        ):
+            said = subprocess.run([TALUS, "stats", directory, "--json", *arguments], capture_output=True, text=True, check=True)
+            expected = {key: value for key, value in json.loads(said.stdout)[0].items() if value is not None}
+            self.assertEqual(self.daemon.get(f"{path}?{query}").json, expected)
+        for query in ("quantity=nowhere", "quantity=far.peak_depth_m", "quantity=front_mass_99_m", "x=a", "bins=2&x=1"):
+            self.problem(self.daemon.get(f"{path}?{query}"), 400)
+
     def test_one_realization_and_its_replay(self):
         job = self.daemon.submit(study(3))
         self.daemon.wait_for(job)

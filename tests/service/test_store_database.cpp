@@ -188,6 +188,7 @@ TEST_F(EchoTest, ADatabaseWithTheValuesInTheRowsOfTheJobsIsMigrated) {
     SQLite::Database raw((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE);
     raw.exec(
         "PRAGMA journal_mode = DELETE; PRAGMA auto_vacuum = NONE; VACUUM; DROP TABLE echo_inputs;"
+        "ALTER TABLE runs DROP COLUMN targets;"
         "PRAGMA user_version = 6");
     raw.exec(R"(UPDATE jobs SET inputs = '{"outputs":["s"],"pause":0.5,"inputs":{"s":"\u00e9","x":[1e300,0.10]}}'
                 WHERE process = 'echo')");
@@ -202,6 +203,31 @@ TEST_F(EchoTest, ADatabaseWithTheValuesInTheRowsOfTheJobsIsMigrated) {
   EXPECT_EQ(job("study").inputs, "{}");
   SQLite::Database raw((directory / "queue.sqlite").string());
   EXPECT_EQ(raw.execAndGet("PRAGMA auto_vacuum").getInt(), 2);
+}
+
+TEST_F(StoreTest, KeepsWhatARunDidToItsTargets) {
+  add("one", 2);
+  Record made = result(7.5);
+  made.targets = {{.of = {"road", TargetKind::stretch}, .open = true, .peak_depth = 1.0 / 3.0},
+                  {.of = {"house", TargetKind::structure}, .arrives = true, .arrival = 2.5}};
+  TargetOutcome& house = made.targets[1];
+  for (const TargetNumber& number : target_numbers)
+    if (number.structures_only) house.*number.member = 0.1;
+  const Claim claim = *store->claim();
+  ASSERT_TRUE(store->accept(claim, made));
+  store = open();
+  const auto run = store->run(claim.study, claim.key);
+  ASSERT_TRUE(run && run->result);
+  EXPECT_FALSE(run->damaged);
+  EXPECT_EQ(csv_line(*run->result), csv_line(made));
+  ASSERT_EQ(run->result->targets.size(), 2u);
+  EXPECT_EQ(run->result->targets[0].of, made.targets[0].of);
+  store.reset();
+  SQLite::Database((directory / "queue.sqlite").string(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE runs SET targets = replace(targets, '2.5', '3.5')");
+  store = open();
+  const auto spoilt = store->run(claim.study, claim.key);
+  EXPECT_TRUE(!spoilt || spoilt->damaged) << "the checksum does not cover the targets";
 }
 
 TEST_F(StoreTest, TheIndexCoversTheHistogram) {

@@ -13,7 +13,7 @@ import pathlib
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-EXPERIMENTS = ["dam_break", "rest", "stress_at_rest", "sliding_slab", "sliding_block", "bingham_incline", "bingham_slump", "bingham_dam", "aluminium_rods", "columns", "yangbaodi", "noise_floor", "convergence", "numerics_budget", "paper_study"]
+EXPERIMENTS = ["dam_break", "rest", "stress_at_rest", "sliding_slab", "sliding_block", "bingham_incline", "bingham_slump", "bingham_dam", "aluminium_rods", "columns", "softening", "yangbaodi", "noise_floor", "convergence", "numerics_budget", "paper_study"]
 
 
 def measure(name, work, coarse):

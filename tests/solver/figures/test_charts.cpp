@@ -124,9 +124,20 @@ TEST(Charts, HitProbabilityLiesAtTheTerrainsX) {
   const StudyFiles study = example(20, false);
   const std::string script = hit_probability_sheet(study, slope, slide).script.text();
   const Rows rows = block(script, "curve");
-  const auto& curve = study.quantities.at("influence_zone_m").exceedance;
-  // Distances count from the left boundary at x = -5.
-  EXPECT_NEAR(rows[1][0], curve.front().x - 5.0, 1e-5);
+  // Distances count from the left boundary at x = -5. The curve begins at the toe and steps down at each front, here
+  // 30, 30.1, ..., 31.9; beyond the last it is 0, with an upper bound.
+  double toe = -1e300;
+  for (const Vec2 p : slide[0].outline) toe = std::max(toe, p.x);
+  EXPECT_NEAR(rows[0][0], toe, 1e-5);
+  EXPECT_EQ(rows[0][1], 1.0);
+  EXPECT_NEAR(rows[1][0], 30.0 - 5.0, 1e-5);
+  EXPECT_NEAR(rows[2][0], 30.0 - 5.0, 1e-5);
+  EXPECT_EQ(rows[1][1], 1.0);
+  EXPECT_NEAR(rows[2][1], 19.0 / 20, 1e-6);
+  EXPECT_EQ(rows.back()[1], 0.0);
+  EXPECT_EQ(rows.back()[2], 0.0);
+  EXPECT_NEAR(rows.back()[3], *wilson(0, 20).hi, 1e-5);
+  EXPECT_GT(rows.back()[0], 31.9 - 5.0 + 1.0) << "beyond the last front";
   EXPECT_EQ(block(script, "slide0").front(), (std::vector<double>{-5, 20}));
   for (std::size_t i = 1; i < rows.size(); ++i) EXPECT_LE(rows[i][1], rows[i - 1][1]);
 }

@@ -68,6 +68,21 @@ RunResult sample_result() {
                                    .value = 1.5,
                                    .limit = 0.5,
                                    .message = "1.5 times"}}},
+          .targets = {{.of = {"road", TargetKind::stretch}},
+                      {.of = {"house", TargetKind::structure},
+                       .arrives = true,
+                       .open = true,
+                       .arrival = 1.5,
+                       .peak_depth = 2.5,
+                       .peak_speed = 3.5,
+                       .peak_dynamic_pressure = 4.5,
+                       .final_depth = 5.5,
+                       .peak_horizontal_force = 6.5,
+                       .peak_downward_force = 7.5,
+                       .peak_overturning_moment = 8.5,
+                       .final_horizontal_force = -9.5,
+                       .horizontal_impulse = 10.5,
+                       .downward_impulse = -11.5}},
           .warnings = {{"/time/end_s", "is long"}}};
 }
 
@@ -129,6 +144,30 @@ TEST(ResultJson, HasTheKeysOfTheContract) {
       (json{
           {"check", "mach_number"}, {"verdict", "invalid"}, {"value", 1.5}, {"limit", 0.5}, {"message", "1.5 times"}}));
   EXPECT_EQ(d["warnings"], (json{{{"pointer", "/time/end_s"}, {"message", "is long"}}}));
+  EXPECT_EQ(d["targets"][0], (json{{"name", "road"},
+                                   {"kind", "stretch"},
+                                   {"arrives", false},
+                                   {"open", false},
+                                   {"arrival_s", nullptr},
+                                   {"peak_depth_m", 0.0},
+                                   {"peak_speed_m_s", 0.0},
+                                   {"peak_dynamic_pressure_Pa", 0.0},
+                                   {"final_depth_m", 0.0}}));
+  EXPECT_EQ(d["targets"][1], (json{{"name", "house"},
+                                   {"kind", "structure"},
+                                   {"arrives", true},
+                                   {"open", true},
+                                   {"arrival_s", 1.5},
+                                   {"peak_depth_m", 2.5},
+                                   {"peak_speed_m_s", 3.5},
+                                   {"peak_dynamic_pressure_Pa", 4.5},
+                                   {"final_depth_m", 5.5},
+                                   {"peak_horizontal_force_N_m", 6.5},
+                                   {"peak_downward_force_N_m", 7.5},
+                                   {"peak_overturning_moment_Nm_m", 8.5},
+                                   {"final_horizontal_force_N_m", -9.5},
+                                   {"horizontal_impulse_Ns_m", 10.5},
+                                   {"downward_impulse_Ns_m", -11.5}}));
   constexpr double created = 1 - 1024 + 2 + 4 + 512 + 8 + 256 + 16 + 32 + 64 + 128 - 3;
   EXPECT_EQ(d["energy"], (json{{"kinetic_J_m", 1},
                                {"potential_J_m", -1024},
@@ -186,7 +225,7 @@ TEST(ResultJson, OfAnEarlierVersionIsReadWithoutWhatCameLater) {
   const TemporaryDirectory dir;
   json earlier = document();
   for (const char* key : {"backend", "simd", "quality", "warnings", "mass_kg_m", "energy", "front_at_thickness_m",
-                          "front_thickness_m", "notes"})
+                          "front_thickness_m", "notes", "targets"})
     earlier.erase(key);
   earlier["field"].erase("cov_tan_phi");
   EXPECT_EQ(schema_faults(earlier), "");
@@ -276,7 +315,7 @@ TEST(ResultJson, NamesAnyKeyThatIsMissing) {
     const std::string key = pointer.substr(1);
     if (key == "backend" || key == "simd" || key == "quality" || key == "warnings" || key == "mass_kg_m" ||
         key == "energy" || key == "field/cov_tan_phi" || key == "lower_bounds" || key == "front_thickness_m" ||
-        key == "notes" || key == "energy/numerical_share")
+        key == "notes" || key == "targets" || key == "energy/numerical_share")
       continue;  // came later
     if (const Measure* measure = find_measure(key); measure && measure != measure_table.data()) continue;
     const json::json_pointer place(pointer);
@@ -312,6 +351,9 @@ TEST(ResultJson, NamesValuesOutOfRange) {
                                                 {"/digest", "0123456789ABCDEF"},
                                                 {"/ending", "bored"},
                                                 {"/quality/verdict", "good"},
+                                                {"/targets/0/kind", "house"},
+                                                {"/targets/1/arrives", 1},
+                                                {"/targets/1/peak_horizontal_force_N_m", nullptr},
                                                 {"/quality/reasons", 1},
                                                 {"/quality/reasons/0/limit", "1"},
                                                 {"/field/captured_variance", -0.1},

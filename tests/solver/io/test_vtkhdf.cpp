@@ -33,6 +33,7 @@ void expect_equal(const Frame& found, const Frame& wanted) {
   EXPECT_EQ(found.velocity, wanted.velocity);
   EXPECT_EQ(found.density, wanted.density);
   EXPECT_EQ(found.pressure, wanted.pressure);
+  EXPECT_EQ(found.cohesion, wanted.cohesion);
   EXPECT_EQ(found.shear_rate, wanted.shear_rate);
   EXPECT_EQ(found.stress, wanted.stress);
   ASSERT_EQ(found.tan_phi.size(), wanted.tan_phi.size());
@@ -225,7 +226,7 @@ Frame noise_frame(std::size_t particles, std::size_t k) {
   for (std::size_t i = 0; i < particles; ++i) {
     f.position[i] = f.displacement[i] =
         f.velocity[i] = {static_cast<float>(uniform(random)), static_cast<float>(uniform(random))};
-    f.density[i] = f.pressure[i] = f.shear_rate[i] = static_cast<float>(uniform(random));
+    f.density[i] = f.pressure[i] = f.cohesion[i] = f.shear_rate[i] = static_cast<float>(uniform(random));
   }
   return f;
 }
