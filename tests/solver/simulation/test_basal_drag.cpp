@@ -96,7 +96,7 @@ TEST(BasalDrag, WorkOfTheTermIsInTheBalance) {
   EXPECT_LT(std::abs(e.created()), 0.01 * e.gravity_work());
 }
 
-// A block that crosses from 5 to 30 degrees of friction stops on the second stretch.
+// The friction of a stretch holds on it as that of the bed does, and nowhere else.
 TEST(Stretches, ASlabMeetsTheFrictionOfTheStretchItLiesOn) {
   const auto acceleration_on = [](double phi_bed, std::vector<WallStretch> stretches) {
     Model m = sliding({});
