@@ -33,7 +33,7 @@ void become_undrained(MaterialInput& m) {
 void become_drained(MaterialInput& m) {
   if (!m.undrained) return;
   m.undrained = false;
-  m.c = m.c_gradient = m.gradient_kPa_m = 0.0;
+  m.c = m.c_gradient = m.gradient_kPa_per_m = 0.0;
   m.softening.reset();
 }
 
@@ -46,17 +46,17 @@ void read_undrained_strength(ObjectReader& in, MaterialInput& m) {
        "Not together with friction angle, cohesion, r_u or mu_i.",
        "vane, cone or triaxial test", "none"},
       {undrained_keys[1], strength_kPa, 1000.0, {"The same in kPa.", "vane, cone or triaxial test", "none"}});
-  in.optional_number("undrained_strength_gradient_kPa_m", gradient, {"kPa/m", 0.0, 1000.0},
+  in.optional_number("undrained_strength_gradient_kPa_per_m", gradient, {"kPa/m", 0.0, 1000.0},
                      {"Growth of c_u with the depth below the ground surface before the slide.",
                       "vane or cone profile; 1 to 2 kPa/m in soft clay", "0"});
   if (strength) m.c = *strength;
-  if (gradient) m.gradient_kPa_m = *gradient;
+  if (gradient) m.gradient_kPa_per_m = *gradient;
   if (gradient && !strength && drained_before && !m.undrained)
-    in.fault("undrained_strength_gradient_kPa_m", "needs undrained_strength_kPa, the strength at the ground surface");
-  m.c_gradient = 1000.0 * m.gradient_kPa_m;
+    in.fault("undrained_strength_gradient_kPa_per_m", "needs undrained_strength_kPa, the strength at the ground surface");
+  m.c_gradient = 1000.0 * m.gradient_kPa_per_m;
   if (!m.undrained) return;
   in.record(undrained_keys[0], m.c);
-  if (m.gradient_kPa_m > 0.0) in.record("undrained_strength_gradient_kPa_m", m.gradient_kPa_m);
+  if (m.gradient_kPa_per_m > 0.0) in.record("undrained_strength_gradient_kPa_per_m", m.gradient_kPa_per_m);
 }
 
 /// A residual value that is not above the peak, at which the key itself points, or that of the layer that inherits it.

@@ -52,7 +52,7 @@ const Usual undrained_strength{"undrained_strength_Pa",
                                2e6,
                                "0, or 200 Pa to 2 MPa",
                                {{0.0, 200.0, "a strength in kPa is given as undrained_strength_kPa"}}};
-const Usual strength_gradient{"undrained_strength_gradient_kPa_m",
+const Usual strength_gradient{"undrained_strength_gradient_kPa_per_m",
                               "kPa/m",
                               0.1,
                               20.0,

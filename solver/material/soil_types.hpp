@@ -64,7 +64,7 @@ inline constexpr std::array strength_values{
     StrengthValue{"clay of low strength", "undrained_strength_kPa", 20.0, 40.0, "EN ISO 14688-2:2018"},
     StrengthValue{"clay of medium strength", "undrained_strength_kPa", 40.0, 75.0, "EN ISO 14688-2:2018"},
     StrengthValue{"clay of high strength", "undrained_strength_kPa", 75.0, 150.0, "EN ISO 14688-2:2018"},
-    StrengthValue{"normally consolidated clay below the water table", "undrained_strength_gradient_kPa_m", 1.0, 2.0,
+    StrengthValue{"normally consolidated clay below the water table", "undrained_strength_gradient_kPa_per_m", 1.0, 2.0,
                   "0.22 of the vertical effective stress (Mesri 1975, J. Geotech. Eng. Div. 101(4), 409-412) at a "
                   "buoyant unit weight of 5 to 9 kN/m3"},
     StrengthValue{"soil with a clay fraction below 25 %", "residual_friction_angle_deg", 20.0, 35.0,

@@ -158,6 +158,8 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   mutations.spoil(example("joined"));
   mutations.spoil(example("mu-i"));
   mutations.spoil(example("soil"));
+  mutations.spoil(example("field"));
+  mutations.spoil(example("field-data"));
   // The forms that the examples do not hold: the other file, the other step.
   json other = example("surfaces");
   other["slide"] = {{"ground_surface_m", {{0, 20}, {6, 20}, {24, 6}}}, {"slip_surface_csv", "case-bed.csv"}};
@@ -174,7 +176,7 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   const json drained_softening = {{"residual_cohesion_Pa", 0}, {"displacement_m", 0.1}, {"band_width_m", 2}};
   other["material"] = {{"density_kg_m3", 1800},
                        {"undrained_strength_kPa", 20},
-                       {"undrained_strength_gradient_kPa_m", 1},
+                       {"undrained_strength_gradient_kPa_per_m", 1},
                        {"softening", {{"residual_undrained_strength_kPa", 5}, {"plastic_shear_strain", 0.1}}}};
   other["slide"]["outlines"][0]["material"] = {{"friction_angle_deg", 20}, {"softening", drained_softening}};
   mutations.spoil(other);

@@ -60,10 +60,22 @@ TEST(CaseSchema, ClosesEveryObject) {
 /// The unit in a number's key is the unit in its description.
 TEST(CaseSchema, UnitsStandInTheKeys) {
   const test::SchemaCheck schema("case");
-  const std::pair<const char*, const char*> suffixes[] = {
-      {"_kg_m3", "kg/m3"},       {"_m_s2", "m/s2"},   {"_m_s", "m/s"}, {"_Pa_s", "Pa s"},   {"_Pa", "Pa"},
-      {"_deg", "deg"},           {"_1_s", "1/s"},     {"_mm", "mm"},   {"_kN_m3", "kN/m3"}, {"_kPa", "kPa"},
-      {"_spacings", "spacings"}, {"_kPa_m", "kPa/m"}, {"_m", "m"},     {"_s", "s"},         {"", "-"}};
+  const std::pair<const char*, const char*> suffixes[] = {{"_deg_per_m", "deg/m"},
+                                                          {"_kPa_per_m", "kPa/m"},
+                                                          {"_kg_m3", "kg/m3"},
+                                                          {"_m_s2", "m/s2"},
+                                                          {"_m_s", "m/s"},
+                                                          {"_Pa_s", "Pa s"},
+                                                          {"_Pa", "Pa"},
+                                                          {"_deg", "deg"},
+                                                          {"_1_s", "1/s"},
+                                                          {"_mm", "mm"},
+                                                          {"_kN_m3", "kN/m3"},
+                                                          {"_kPa", "kPa"},
+                                                          {"_spacings", "spacings"},
+                                                          {"_m", "m"},
+                                                          {"_s", "s"},
+                                                          {"", "-"}};
   for_each_key(schema.document(), "", [&](const std::string& pointer, const json& key, bool) {
     if (key["type"] != "number") return;
     for (const auto& [suffix, unit] : suffixes)

@@ -27,7 +27,7 @@ LoadedCase loaded_twice(const Json& document) {
 
 TEST(CaseSoil, UndrainedStrengthTakesThePlaceOfFrictionAndCohesion) {
   Json document = with("/material", clay());
-  document["material"]["undrained_strength_gradient_kPa_m"] = 1.5;
+  document["material"]["undrained_strength_gradient_kPa_per_m"] = 1.5;
   const LoadedCase loaded = loaded_twice(document);
   const Material& m = loaded.value.model.materials[0];
   EXPECT_TRUE(m.undrained);
@@ -86,9 +86,9 @@ TEST(CaseSoil, KeysOfTheOtherKindOfStrengthAreRefused) {
                                                             "two"});
   }
   Json document = minimal();
-  document["material"]["undrained_strength_gradient_kPa_m"] = 1;
+  document["material"]["undrained_strength_gradient_kPa_per_m"] = 1;
   EXPECT_EQ(faults_of(document),
-            std::vector<std::string>{"/material/undrained_strength_gradient_kPa_m: needs undrained_strength_kPa, the "
+            std::vector<std::string>{"/material/undrained_strength_gradient_kPa_per_m: needs undrained_strength_kPa, the "
                                      "strength at the ground surface"});
   document = with("/material", clay());
   document["material"]["softening"] = {{"residual_friction_angle_deg", 0}, {"displacement_m", 1}};

@@ -112,7 +112,8 @@ TEST(FieldOfACase, AveragingKeepsTheMean) {
 }
 
 TEST(FieldOfACase, SpreadIsThatOfTheRealizations) {
-  const Case c = slope({{"data", {{4.0, 4.0, 30.0, 0.5}}}, {"covariance", "matern_3_2"}, {"terms", 40}});
+  const Case c =
+      slope({{"data", {{4.0, 4.0, 30.0, 0.5}}}, {"covariance", "matern_3_2"}, {"sampler", "circulant_embedding"}});
   const ParticlePlan plan = plan_particles(c.model);
   const FieldSpread spread = field_spread(c.model, *c.field, plan);
   const std::size_t near = particle_nearest(c, {4, 4}), far = particle_nearest(c, {9.5, 0.3});
