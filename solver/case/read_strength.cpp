@@ -52,7 +52,8 @@ void read_undrained_strength(ObjectReader& in, MaterialInput& m) {
   if (strength) m.c = *strength;
   if (gradient) m.gradient_kPa_per_m = *gradient;
   if (gradient && !strength && drained_before && !m.undrained)
-    in.fault("undrained_strength_gradient_kPa_per_m", "needs undrained_strength_kPa, the strength at the ground surface");
+    in.fault("undrained_strength_gradient_kPa_per_m",
+             "needs undrained_strength_kPa, the strength at the ground surface");
   m.c_gradient = 1000.0 * m.gradient_kPa_per_m;
   if (!m.undrained) return;
   in.record(undrained_keys[0], m.c);

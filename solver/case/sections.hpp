@@ -48,7 +48,7 @@ void read_lattice(ObjectReader& in, Model& m);
 /// A material and its friction angles as written, so that a layer which inherits an angle repeats it exactly.
 struct MaterialInput : Material {
   double friction_angle_deg = 0.0;
-  double gradient_kPa_per_m = 0.0;                 ///< of the undrained strength
+  double gradient_kPa_per_m = 0.0;             ///< of the undrained strength
   double residual_angle_deg = 0.0;             ///< of softening, where it states one
   double high_rate_friction_angle_deg = 90.0;  ///< of mu_i
 };

@@ -123,8 +123,9 @@ void draw(const FieldOnParticles& field, const Case& problem, const figures::Sta
   }
   if (!field.spread || realization)
     shots.push_back({&frame, figures::Colour::friction_angle, field.spread ? "Realization" : "Before the slide"});
-  figures::plot_profiles(shots, problem.model.terrain, problem.model.dx, path, stamps,
-                         {.mark_front = false, .marks = marks_of(problem.field), .structures = figures::structures_of(problem.model)});
+  figures::plot_profiles(
+      shots, problem.model.terrain, problem.model.dx, path, stamps,
+      {.mark_front = false, .marks = marks_of(problem.field), .structures = figures::structures_of(problem.model)});
 }
 
 void write(const FieldOnParticles& field, const Case& problem, const figures::Stamps& stamps, const fs::path& path,

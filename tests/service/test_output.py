@@ -28,7 +28,8 @@ class Output(ServiceTest):
             "profile": [],  # prints nothing
             "study": [["study", slope, "--out", out, "--realizations", 2, "--no-figures"],
                       ["study", slope, "--out", out, "--realizations", 2, "--no-figures", "--json"]],
-            "stats": [["stats", out], ["stats", out, "--json"]],
+            "stats": [["stats", out], ["stats", out, "--json"], ["stats", out, "--at", 30]],
+            "compare": [["compare", out, out], ["compare", out, out, "--json"]],
             "plot": [["plot", out], ["plot", out, "--json"], ["plot", slope, "--out", self.dir / "slope.svg"]],
             "schema": [["schema"], ["schema", "case"]],
             "bench": [["bench", "--sizes", 1000, "--threads", 1, "--seconds", 0.1],

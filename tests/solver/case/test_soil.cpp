@@ -87,9 +87,10 @@ TEST(CaseSoil, KeysOfTheOtherKindOfStrengthAreRefused) {
   }
   Json document = minimal();
   document["material"]["undrained_strength_gradient_kPa_per_m"] = 1;
-  EXPECT_EQ(faults_of(document),
-            std::vector<std::string>{"/material/undrained_strength_gradient_kPa_per_m: needs undrained_strength_kPa, the "
-                                     "strength at the ground surface"});
+  EXPECT_EQ(
+      faults_of(document),
+      std::vector<std::string>{"/material/undrained_strength_gradient_kPa_per_m: needs undrained_strength_kPa, the "
+                               "strength at the ground surface"});
   document = with("/material", clay());
   document["material"]["softening"] = {{"residual_friction_angle_deg", 0}, {"displacement_m", 1}};
   EXPECT_EQ(faults_of(document).size(), 1u);
