@@ -10,7 +10,7 @@ namespace {
 constexpr double reach_in_spacings = 3.0;  ///< as that of thickness()
 
 /// Weighted sums at one place.
-struct Column {
+struct FlowColumn {
   double area = 0.0;       ///< sum A w [m]
   double mass = 0.0;       ///< sum m w [kg/m2]
   Vec2 momentum;           ///< sum m v w [kg/(m s)]
@@ -31,7 +31,7 @@ TargetFlow flow_at(const Target& target, const Soil& soil, std::span<const Mater
   const double R = target_reach(dx), length = target.to - target.from;
   const auto pieces = static_cast<std::size_t>(std::ceil(length / (0.5 * R)));
   const double step = pieces > 0 ? length / static_cast<double>(pieces) : 1.0;
-  std::vector<Column> columns(pieces + 1);
+  std::vector<FlowColumn> columns(pieces + 1);
   const auto last = static_cast<double>(pieces);
   for (std::size_t i = 0; i < soil.n_active; ++i) {
     const double s = soil.x[i] - target.from;
@@ -49,7 +49,7 @@ TargetFlow flow_at(const Target& target, const Soil& soil, std::span<const Mater
     }
   }
   TargetFlow flow;
-  for (const Column& column : columns) {
+  for (const FlowColumn& column : columns) {
     flow.depth = std::max(flow.depth, column.area);
     if (column.area < target.threshold) continue;
     flow.speed = std::max(flow.speed, norm(column.momentum) / column.mass);
