@@ -15,7 +15,7 @@ constexpr Quantity length{"m", 0.0, 1e6, true};
 constexpr Quantity log_stdev_range{"", -5.0, 5.0};
 constexpr Quantity cov_range{"", 0.0, 10.0};
 
-constexpr Names<FieldDirection> directions[] = {
+constexpr Names<FieldDirection> field_directions[] = {
     {"xy", FieldDirection::xy}, {"x", FieldDirection::x}, {"y", FieldDirection::y}};
 constexpr Names<FieldSampler> samplers[] = {{"karhunen_loeve", FieldSampler::karhunen_loeve},
                                             {"circulant_embedding", FieldSampler::circulant_embedding}};
@@ -181,7 +181,7 @@ void read_field(ObjectReader& in, FieldSpec& spec, double dx, const std::filesys
                 SourceLocations& origins) {
   read_correlation(in, spec);
   read_marginal(in, spec);
-  in.choice("direction", spec.direction, directions, {"Axes along which the field varies.", "[Z20] Eqs. 11, 23"});
+  in.choice("direction", spec.direction, field_directions, {"Axes along which the field varies.", "[Z20] Eqs. 11, 23"});
   in.choice("sampler", spec.sampler, samplers,
             {"karhunen_loeve: truncated expansion; circulant_embedding: the full variance, on a grid.",
              "[Z20] Eq. 11; Dietrich & Newsam 1997"});

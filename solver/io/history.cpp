@@ -47,10 +47,6 @@ std::string line_of(const HistoryRow& row) {
   return line + "," + to_text(row.energy.created()) + "\n";
 }
 
-[[noreturn]] void bad_line(const fs::path& path, std::size_t line, const std::string& what) {
-  throw IoError(path.string() + ":" + std::to_string(line) + ": " + what);
-}
-
 }  // namespace
 
 void write_history(const fs::path& path, std::span<const HistoryRow> rows) {
@@ -63,15 +59,15 @@ std::vector<HistoryRow> read_history(const fs::path& path) {
   constexpr std::size_t max_bytes = std::size_t{1} << 30;
   const std::string content = read_file(path, max_bytes);
   CsvRows lines(content);
-  if (!lines.next()) bad_line(path, 1, "the header is missing");
+  if (!lines.next()) throw_at_line(path, 1, "the header is missing");
   const std::size_t columns = lines.text() == first_header ? first_columns : all_columns;
   if (columns == all_columns && lines.text() != header())
-    bad_line(path, 1, "is not the header of a history (" + header() + ")");
+    throw_at_line(path, 1, "is not the header of a history (" + header() + ")");
   std::vector<HistoryRow> rows;
   while (lines.next())
     if (!parse(lines.fields(), columns, rows.emplace_back()))
-      bad_line(path, static_cast<std::size_t>(lines.line()), "is not " + std::to_string(columns) + " numbers");
-  if (!content.ends_with('\n')) bad_line(path, static_cast<std::size_t>(lines.line()), "the line does not end");
+      throw_at_line(path, lines.line(), "is not " + std::to_string(columns) + " numbers");
+  if (!content.ends_with('\n')) throw_at_line(path, lines.line(), "the line does not end");
   return rows;
 }
 

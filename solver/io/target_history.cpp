@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view header =
+constexpr std::string_view target_header =
     "time_s,step,target,depth_m,speed_m_s,dynamic_pressure_Pa,horizontal_force_N_m,downward_force_N_m,"
     "overturning_moment_Nm_m,horizontal_impulse_Ns_m,downward_impulse_Ns_m,overturning_impulse_Nms_m";
 constexpr std::size_t columns = 12, first_of_impulse = 9;
@@ -38,10 +38,6 @@ std::string line_of(const TargetRow& row, const Target& target, const TargetRow*
   return line + numbers_of(mean) + numbers_of(row.impulse) + "\n";
 }
 
-[[noreturn]] void bad_line(const fs::path& path, std::size_t line, const std::string& what) {
-  throw IoError(path.string() + ":" + std::to_string(line) + ": " + what);
-}
-
 bool parse(const std::vector<std::string>& fields, std::span<const Target> targets, TargetRow& row) {
   if (fields.size() != columns) return false;
   const auto number = [&](std::size_t i, auto& value) {
@@ -62,7 +58,7 @@ bool parse(const std::vector<std::string>& fields, std::span<const Target> targe
 }  // namespace
 
 void write_target_history(const fs::path& path, std::span<const Target> targets, std::span<const TargetRow> rows) {
-  std::string text = std::string(header) + "\n";
+  std::string text = std::string(target_header) + "\n";
   std::vector<const TargetRow*> before(targets.size(), nullptr);
   for (const TargetRow& row : rows) {
     text += line_of(row, targets[row.target], before[row.target]);
@@ -75,14 +71,13 @@ std::vector<TargetRow> read_target_history(const fs::path& path, std::span<const
   constexpr std::size_t max_bytes = std::size_t{1} << 30;
   const std::string content = read_file(path, max_bytes);
   CsvRows lines(content);
-  if (!lines.next() || lines.text() != header)
-    bad_line(path, 1, "is not the header of a history of targets (" + std::string(header) + ")");
+  if (!lines.next() || lines.text() != target_header)
+    throw_at_line(path, 1, "is not the header of a history of targets (" + std::string(target_header) + ")");
   std::vector<TargetRow> rows;
   while (lines.next())
     if (!parse(lines.fields(), targets, rows.emplace_back()))
-      bad_line(path, static_cast<std::size_t>(lines.line()),
-               "is not " + std::to_string(columns) + " fields with a target of the case");
-  if (!content.ends_with('\n')) bad_line(path, static_cast<std::size_t>(lines.line()), "the line does not end");
+      throw_at_line(path, lines.line(), "is not " + std::to_string(columns) + " fields with a target of the case");
+  if (!content.ends_with('\n')) throw_at_line(path, lines.line(), "the line does not end");
   return rows;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "support/error.hpp"
+
 namespace talus {
 namespace {
 
@@ -128,6 +130,10 @@ std::string csv_quoted(std::string_view text) {
     field += c == '\n' || c == '\r' ? ' ' : c;
   }
   return field + '"';
+}
+
+void throw_at_line(const std::filesystem::path& path, int line, const std::string& what) {
+  throw IoError(path.string() + ":" + std::to_string(line) + ": " + what);
 }
 
 }  // namespace talus

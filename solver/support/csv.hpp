@@ -1,6 +1,7 @@
 #pragma once
 // Comma-separated values (RFC 4180), read row by row and written field by field.
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,5 +47,8 @@ class CsvRows {
 
 /// A text as a field on one line: in quotation marks, line breaks as blanks; an empty text stays empty.
 std::string csv_quoted(std::string_view text);
+
+/// @throws IoError "PATH:LINE: WHAT". @param line  counted from 1
+[[noreturn]] void throw_at_line(const std::filesystem::path& path, int line, const std::string& what);
 
 }  // namespace talus
