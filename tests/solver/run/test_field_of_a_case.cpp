@@ -11,7 +11,7 @@
 namespace talus {
 namespace {
 
-Case slope(const Json& field) {
+Case slope_with(const Json& field) {
   Json document = {{"title", "slope"},
                    {"particle_spacing_m", 0.5},
                    {"terrain", {{"bed_m", {{0, 4}, {8, 0}, {60, 0}}}}},
@@ -39,7 +39,7 @@ std::size_t particle_nearest(const Case& c, Vec2 x) {
 
 // Exact data at the places of particles are met to rounding, by every sampler, marginal and sign of sigma.
 TEST(FieldOfACase, RealizationsMeetExactData) {
-  const Case plain = slope(Json::object());
+  const Case plain = slope_with(Json::object());
   const ParticlePlan plan = plan_particles(plain.model);
   const std::size_t one = particle_nearest(plain, {2, 5}), other = particle_nearest(plain, {6, 3});
   const Vec2 a = plan.soil[one].x, b = plan.soil[other].x;
@@ -49,7 +49,7 @@ TEST(FieldOfACase, RealizationsMeetExactData) {
         Json{{"data", data}, {"mean_tan_phi", 0.4}, {"terms", 30}},
         Json{{"data", data}, {"trend_deg_per_m", 1.0}, {"covariance", "squared_exponential"}, {"dip_deg", 20}}})
     for (const std::int64_t realization : {0, 1}) {
-      const std::vector<double> phi = angles_deg(slope(field), realization, plan);
+      const std::vector<double> phi = angles_deg(slope_with(field), realization, plan);
       EXPECT_NEAR(phi[one], 31.5, 1e-6) << field.dump();
       EXPECT_NEAR(phi[other], 19.0, 1e-6) << field.dump();
     }
@@ -58,12 +58,12 @@ TEST(FieldOfACase, RealizationsMeetExactData) {
 // 2,000 realizations scatter about an uncertain datum as kriging says: its own error e (2 deg) and the prior's stdev s
 // make the mean and the variance 1/(1/s^2 + 1/e^2) on the scale of ln tan(phi). z = 5 standard errors.
 TEST(FieldOfACase, RealizationsScatterAboutAnUncertainDatum) {
-  const Case plain = slope(Json::object());
+  const Case plain = slope_with(Json::object());
   const std::size_t at = particle_nearest(plain, {4, 4});
   const ParticlePlan plan = plan_particles(plain.model);
   const Vec2 x = plan.soil[at].x;
   const Case c =
-      slope({{"data", {{x.x, x.y, 30.0, 2.0}}}, {"sampler", "circulant_embedding"}, {"grid_spacing_m", 0.5}});
+      slope_with({{"data", {{x.x, x.y, 30.0, 2.0}}}, {"sampler", "circulant_embedding"}, {"grid_spacing_m", 0.5}});
   constexpr int n = 2000;
   double sum = 0, squares = 0;
   for (int k = 0; k < n; ++k) {
@@ -79,7 +79,7 @@ TEST(FieldOfACase, RealizationsScatterAboutAnUncertainDatum) {
 }
 
 TEST(FieldOfACase, TheTrendRaisesTheMedianWithDepth) {
-  const Case c = slope({{"trend_deg_per_m", 1.5}});
+  const Case c = slope_with({{"trend_deg_per_m", 1.5}});
   const ParticlePlan plan = plan_particles(c.model);
   const auto median = strength(c.model, c.field, c.study, plan, {}).properties.tan_phi;
   for (std::size_t i = 0; i < plan.soil.size(); ++i) {
@@ -91,10 +91,10 @@ TEST(FieldOfACase, TheTrendRaisesTheMedianWithDepth) {
 
 // Averaging over cells narrows the distribution of tan(phi) and keeps its mean: 1,000 realizations, z = 5.
 TEST(FieldOfACase, AveragingKeepsTheMean) {
-  const Case c = slope({{"correlation_length_m", 0.5},
-                        {"cov_tan_phi", 0.5},
-                        {"sampler", "circulant_embedding"},
-                        {"grid_spacing_m", 0.25}});
+  const Case c = slope_with({{"correlation_length_m", 0.5},
+                             {"cov_tan_phi", 0.5},
+                             {"sampler", "circulant_embedding"},
+                             {"grid_spacing_m", 0.25}});
   ASSERT_TRUE(c.field->cell_average);
   const ParticlePlan plan = plan_particles(c.model);
   constexpr int n = 1000;
@@ -113,7 +113,7 @@ TEST(FieldOfACase, AveragingKeepsTheMean) {
 
 TEST(FieldOfACase, SpreadIsThatOfTheRealizations) {
   const Case c =
-      slope({{"data", {{4.0, 4.0, 30.0, 0.5}}}, {"covariance", "matern_3_2"}, {"sampler", "circulant_embedding"}});
+      slope_with({{"data", {{4.0, 4.0, 30.0, 0.5}}}, {"covariance", "matern_3_2"}, {"sampler", "circulant_embedding"}});
   const ParticlePlan plan = plan_particles(c.model);
   const FieldSpread spread = field_spread(c.model, *c.field, plan);
   const std::size_t near = particle_nearest(c, {4, 4}), far = particle_nearest(c, {9.5, 0.3});
