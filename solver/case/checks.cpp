@@ -2,11 +2,13 @@
 #include <cmath>
 #include <limits>
 
+#include "case/field_materials.hpp"
 #include "case/outline.hpp"
 #include "case/overlay.hpp"
 #include "case/sections.hpp"
 #include "particles/geometry.hpp"
 #include "particles/ground.hpp"
+#include "random_field/property_fields.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/reach.hpp"
 #include "support/text.hpp"
@@ -157,6 +159,27 @@ void warn_of_unused_keys(const FieldSpec& f, std::vector<Fault>& warnings) {
     warnings.push_back({"/random_field/grid_spacing_m", "is not used: sampler is karhunen_loeve"});
 }
 
+/// Distributions and correlations that exist; coefficients as many as the properties take.
+void check_properties(const Model& model, const FieldSpec& field, Faults& faults) {
+  const std::vector<FieldMaterial> materials = field_materials(model);
+  try {
+    const PropertyLaws laws(field, materials);
+  } catch (const ConfigError& e) {
+    for (const Fault& fault : e.faults) faults.add(fault.pointer, fault.message);
+  }
+  for (const PropertySpec& p : field.properties)
+    if (p.property == Property::viscosity)
+      for (const Material& m : model.materials)
+        if (m.mu_i && p.applies_to(m.name))
+          faults.add(property_pointer(p.property),
+                     "material " + in_quotes(m.name) + " has mu_i instead of a viscosity");
+  const bool counted = field.sampler == FieldSampler::karhunen_loeve && field.truncation != Truncation::variance_share;
+  const std::size_t needed = coefficients(property_blocks(field, materials, static_cast<std::size_t>(field.terms)));
+  if (counted && !field.xi.empty() && field.xi.size() != needed)
+    faults.add("/random_field/xi", "has " + std::to_string(field.xi.size()) + " coefficients, the properties take " +
+                                       std::to_string(needed));
+}
+
 }  // namespace
 
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults) {
@@ -179,6 +202,10 @@ void check_choices(const Case& c, Faults& faults) {
         "/rheology/shear_rate",
         "\"paper\" is the norm of [Z20] Eq. 7, with which mu(I) is not defined; material mu_i needs \"consistent\"");
   if (!c.field) return;
+  if (!c.field->properties.empty()) {
+    check_properties(c.model, *c.field, faults);
+    return;
+  }
   if (!c.field->mu && !c.field->mean)
     for (const Material& m : c.model.materials)
       if (m.phi <= 0.0)
@@ -203,7 +230,6 @@ void warn_of_thin_front(const Model& model, std::vector<Fault>& warnings) {
 std::vector<Fault> find_warnings(const Case& c) {
   std::vector<Fault> warnings;
   const Model& model = c.model;
-  warn_of_unlikely_values(model, warnings);
   if (!model.terrain.closed) warn_of_overhangs(model.terrain, warnings);
   if (!model.terrain.closed) warn_of_open_ends(model, warnings);
   warn_of_a_slide_in_the_air(model, warnings);

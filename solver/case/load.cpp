@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "case/field_materials.hpp"
 #include "case/overrides.hpp"
 #include "case/sections.hpp"
 #include "particles/geometry.hpp"
@@ -73,9 +74,10 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
   in.object("time", "When to stop and what to keep.", Absent::fault,
             [&](ObjectReader& section) { read_time(section, m.time); });
   in.object("random_field",
-            "Lognormal random field of tan(phi), covariance exp(-|dx|/lx - |dy|/ly) of its logarithm. Give one "
-            "correlation_length_m, or both of x and y; log_stdev (and log_mean), or cov_tan_phi (and mean_tan_phi). "
-            "Without this section the friction angle is the material's everywhere.",
+            "Random soil, covariance exp(-|dx|/lx - |dy|/ly) of the normal field beneath it. Give one "
+            "correlation_length_m, or both of x and y; and properties, or the short form of a lognormal tan(phi): "
+            "log_stdev (and log_mean), or cov_tan_phi (and mean_tan_phi). "
+            "Without this section every property is the material's everywhere.",
             Absent::skip, [&](ObjectReader& section) { read_field(section, c.field.emplace()); });
   in.object("study", "Monte Carlo over realizations of the random field.", Absent::defaults,
             [&](ObjectReader& section) { read_study(section, c.study); });
@@ -110,6 +112,8 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
     check_geometry(out.value.model, origins, faults);
   if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
   if (faults.empty()) {
+    warn_of_unlikely_values(out.value, out.warnings);
+    if (out.value.field) use_property_means(out.value.model, *out.value.field);
     check_steps(out.value.model, faults);
     check_modes(out.value, faults);
   }
@@ -143,7 +147,7 @@ Plan make_plan(const LoadedCase& loaded, std::uint64_t seed, const std::string& 
   if (c.study.realizations > 1) {
     const char* same = "every realization would be the same: ";
     if (!c.field) throw ConfigError("/random_field", std::string(same) + "a study needs a random field");
-    if (c.field->sigma == 0.0)
+    if (!c.field->random())
       throw ConfigError("/random_field", std::string(same) + "the standard deviation of the field is 0");
     if (!c.field->xi.empty())
       throw ConfigError("/random_field/xi", std::string(same) + "the coefficients are given; remove them to draw");

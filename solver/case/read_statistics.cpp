@@ -32,7 +32,9 @@ void read_correlation(ObjectReader& in, FieldSpec& spec) {
                      {"Correlation length along x.", "site investigation", "none"});
   in.optional_number("correlation_length_y_m", y, length,
                      {"Correlation length along y.", "site investigation", "none"});
-  in.one_form({{{"correlation_length_m"}}, {{"correlation_length_x_m", "correlation_length_y_m"}}});
+  in.one_form({{{"correlation_length_m"}, {"properties"}},
+               {{"correlation_length_x_m", "correlation_length_y_m"}, {"properties"}},
+               {{"properties"}}});
   const auto given = [&](const char* key) { return in.find(key) != nullptr; };
   const bool one_axis = given("correlation_length_x_m") || given("correlation_length_y_m");
   const auto require = [&](const char* key) {
@@ -43,15 +45,15 @@ void read_correlation(ObjectReader& in, FieldSpec& spec) {
   } else if (one_axis) {
     require("correlation_length_x_m");
     require("correlation_length_y_m");
-  } else {
+  } else if (spec.properties.empty() || spec.in_space()) {
     require("correlation_length_m");
   }
   spec.ell_x = x.value_or(both.value_or(spec.ell_x));
   spec.ell_y = y.value_or(both.value_or(spec.ell_y));
 }
 
-/// Either the mean and standard deviation of ln(tan phi), or the mean and coefficient of variation of tan(phi). Without
-/// a mean the median is that of the material.
+/// Friction in short: either the mean and standard deviation of ln(tan phi), or the mean and coefficient of variation
+/// of tan(phi). Without a mean the median is that of the material. Or properties, which have been read.
 void read_marginal(ObjectReader& in, FieldSpec& spec) {
   std::optional<double> stdev, cov;
   in.optional_number("log_mean", spec.mu, {"", -20.0, 5.0},
@@ -68,14 +70,17 @@ void read_marginal(ObjectReader& in, FieldSpec& spec) {
                      {"Coefficient of variation of tan(phi) itself, of the whole field; truncation and averaging leave "
                       "less, which result.json states.",
                       "laboratory; 0.05 to 0.4 in soils", "none"});
-  in.one_form({{{"log_stdev"}, {"log_mean"}}, {{"cov_tan_phi"}, {"mean_tan_phi"}}});
+  in.one_form({{{"log_stdev"}, {"log_mean"}}, {{"cov_tan_phi"}, {"mean_tan_phi"}}, {{"properties"}, {"correlation"}}});
   const auto given = [&](const char* key) { return in.find(key) != nullptr; };
   const bool log_form = given("log_stdev") || given("log_mean");
   const bool tan_form = given("cov_tan_phi") || given("mean_tan_phi");
-  if (log_form && tan_form) {
+  if (given("properties")) {
+    for (const char* key : {"log_mean", "log_stdev", "mean_tan_phi", "cov_tan_phi"})
+      if (given(key)) in.fault(key, "is given beside properties; state it under properties.friction");
+  } else if (log_form && tan_form) {
     in.fault("", "mixes log_mean, log_stdev with mean_tan_phi, cov_tan_phi; give one pair");
   } else if (!log_form && !tan_form) {
-    in.fault("log_stdev", "is missing (or cov_tan_phi): how much the friction angle varies");
+    in.fault("log_stdev", "is missing (or cov_tan_phi, or properties): how much the friction angle varies");
   } else if (tan_form && !given("cov_tan_phi")) {
     in.fault("cov_tan_phi", "is missing; " + cov_range.describe());
   } else if (log_form && !given("log_stdev")) {
@@ -105,6 +110,7 @@ void read_domain(ObjectReader& in, std::optional<Box>& domain) {
 }  // namespace
 
 void read_field(ObjectReader& in, FieldSpec& spec) {
+  read_properties(in, spec);
   read_correlation(in, spec);
   read_marginal(in, spec);
   in.choice("direction", spec.direction, directions, {"Axes along which the field varies.", "[Z20] Eqs. 11, 23"});
@@ -129,7 +135,9 @@ void read_field(ObjectReader& in, FieldSpec& spec) {
   read_domain(in, spec.domain);
   in.numbers(
       "xi", spec.xi, {"", -40.0, 40.0}, {0, 1'000'000},
-      {"Standard normal coefficients to use instead of drawn ones, one per mode; empty: drawn.", "[Z20] Table 2"});
+      {"Standard normal coefficients to use instead of drawn ones, one per mode; with properties those of friction, "
+       "cohesion, unit_weight and viscosity in this order, one for a property that is drawn once; empty: drawn.",
+       "[Z20] Table 2"});
   in.optional_number("grid_spacing_m", spec.grid_spacing, length,
                      {"Grid of the circulant embedding. It does not depend on the particle spacing, and a realization "
                       "is the same field at every spacing. Particles take the value of the nearest node.",

@@ -1,10 +1,12 @@
-// talus field: the friction angle of one realization, as numbers or as a picture, without running it.
+// talus field: the random field of one realization, as numbers or as a picture, without running it.
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <numeric>
+#include <set>
 
 #include "case/load.hpp"
 #include "cli/help.hpp"
@@ -13,7 +15,7 @@
 #include "figures/profile.hpp"
 #include "io/vtkhdf.hpp"
 #include "math/angle.hpp"
-#include "random_field/random_field.hpp"
+#include "random_field/property_spec.hpp"
 #include "run/realization.hpp"
 #include "support/json.hpp"
 #include "support/seed.hpp"
@@ -28,22 +30,51 @@ struct FieldOptions {
   std::vector<std::string> overrides;
   std::optional<std::int64_t> realization;
   std::optional<std::uint64_t> seed;
+  std::string property = "friction";  ///< key of property_names
   bool json = false;
+};
+
+/// A column of the output: "cohesion_kPa".
+struct Column {
+  std::string name;
+  std::vector<double> values;
 };
 
 /// The field on the particles before they move.
 struct FieldOnParticles {
   std::vector<Vec2> position;   ///< [m]
   std::vector<double> phi_deg;  ///< [deg]
+  std::vector<Column> others;   ///< the random properties besides friction, in the unit of their names
   Strength strength;
 };
 
+/// The place of a property in property_names by its key, which is known.
+Property property_of(const std::string& key) {
+  return static_cast<Property>(std::ranges::find(property_names, key, &PropertyName::key) - property_names.begin());
+}
+
+/// What is shown of a property: an angle of friction, else its value in the unit of property_names.
+std::vector<double> shown(const Strength& strength, const ParticlePlan& plan, Property property) {
+  std::vector<double> values = property_values(strength, plan, property);
+  for (double& value : values)
+    value = property == Property::friction ? friction_angle_deg(value) : value / name_of(property).factor;
+  return values;
+}
+
 FieldOnParticles field_on(const Case& problem, const RunIdentity& identity) {
   const ParticlePlan plan = plan_particles(problem.model);
-  FieldOnParticles field{
-      .position = {}, .phi_deg = {}, .strength = strength(problem.model, problem.field, problem.study, plan, identity)};
+  FieldOnParticles field{.position = {},
+                         .phi_deg = {},
+                         .others = {},
+                         .strength = strength(problem.model, problem.field, problem.study, plan, identity)};
   for (const SoilPoint& point : plan.soil) field.position.push_back(point.x);
-  for (const double tan_phi : field.strength.properties.tan_phi) field.phi_deg.push_back(friction_angle_deg(tan_phi));
+  field.phi_deg = shown(field.strength, plan, Property::friction);
+  for (const PropertySummary& summary : field.strength.summary.properties) {
+    const Property property = property_of(summary.name);
+    if (property != Property::friction)
+      field.others.push_back(
+          {summary.name + "_" + std::string(name_of(property).suffix), shown(field.strength, plan, property)});
+  }
   return field;
 }
 
@@ -55,43 +86,78 @@ void use_xi(Case& problem, const fs::path& file) {
                       "is missing: the case has no random field that --xi could be the coefficients of");
   problem.field->xi.clear();
   const std::vector<double> xi = read_xi(file);
-  const std::size_t terms = RandomField(*problem.field, bounding_box(problem.model.slide), problem.model.dx).terms();
+  const auto terms =
+      static_cast<std::size_t>(field_summary(problem.model, *problem.field, plan_particles(problem.model)).terms);
   if (xi.size() != terms) {
-    throw ConfigError(file.string(),
-                      "holds " + std::to_string(xi.size()) + " coefficients, the field takes " + std::to_string(terms) +
-                          " (--set random_field.terms=" + std::to_string(xi.size()) + " would make it fit)");
+    const std::string advice = " (--set random_field.terms=" + std::to_string(xi.size()) + " would make it fit)";
+    throw ConfigError(file.string(), "holds " + std::to_string(xi.size()) + " coefficients, the field takes " +
+                                         std::to_string(terms) + (problem.field->properties.empty() ? advice : ""));
   }
   problem.field->xi = xi;
+}
+
+Json extent_of(const std::vector<double>& values) {
+  const auto [lo, hi] = std::ranges::minmax(values);
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+  return {{"mean", sum / static_cast<double>(values.size())}, {"min", lo}, {"max", hi}};
 }
 
 Json summary(const FieldOnParticles& field, const RunIdentity& identity) {
   const auto [lo, hi] = std::minmax_element(field.phi_deg.begin(), field.phi_deg.end());
   const FieldSummary& of = field.strength.summary;
-  return {{"particles", field.position.size()},
-          {"captured_variance", of.captured_variance},
-          {"cov_tan_phi", of.cov},
-          {"terms", of.terms},
-          {"friction_angle_deg", {{"mean", degrees(of.mean_phi)}, {"min", *lo}, {"max", *hi}}},
-          {"realization", identity.realization ? Json(*identity.realization) : Json()},
-          {"seed", identity.realization ? Json(identity.seed) : Json()},
-          {"xi", field.strength.xi}};
+  Json out = {{"particles", field.position.size()},
+              {"captured_variance", of.captured_variance},
+              {"cov_tan_phi", of.cov},
+              {"terms", of.terms},
+              {"friction_angle_deg", {{"mean", degrees(of.mean_phi)}, {"min", *lo}, {"max", *hi}}},
+              {"realization", identity.realization ? Json(*identity.realization) : Json()},
+              {"seed", identity.realization ? Json(identity.seed) : Json()},
+              {"xi", field.strength.xi}};
+  for (const Column& column : field.others) out[column.name] = extent_of(column.values);
+  return out;
 }
 
-std::string subtitle(const FieldSummary& field, const FieldOptions& options) {
-  std::string text = "Friction angle, ";
+/// What the picture shows: name, unit and figure.
+struct Shown {
+  const char* name;
+  const char* unit;
+  figures::Colour colour;
+};
+constexpr Shown shown_properties[] = {{"Friction angle", "°", figures::Colour::friction_angle},
+                                      {"Cohesion", " kPa", figures::Colour::cohesion},
+                                      {"Unit weight", " kN/m3", figures::Colour::unit_weight},
+                                      {"Viscosity", " Pa s", figures::Colour::viscosity}};
+
+/// Of the property that the options name.
+const std::vector<double>& values_shown(const FieldOnParticles& field, const FieldOptions& options) {
+  const std::string prefix = options.property + "_";
+  const auto column = std::ranges::find_if(field.others, [&](const Column& c) { return c.name.starts_with(prefix); });
+  return column == field.others.end() ? field.phi_deg : column->values;
+}
+
+std::string subtitle(const FieldOnParticles& on_particles, const FieldOptions& options) {
+  const FieldSummary& field = on_particles.strength.summary;
+  const Shown& what = shown_properties[index_of(property_of(options.property))];
+  std::string text = std::string(what.name) + ", ";
   text += options.realization       ? "realization " + std::to_string(*options.realization)
           : options.xi_file.empty() ? std::string("median")
                                     : std::string("given coefficients");
-  text += ": mean " + figures::fixed(degrees(field.mean_phi), 2) + "°";
+  const bool friction = property_of(options.property) == Property::friction;
+  const double mean =
+      friction ? degrees(field.mean_phi) : extent_of(values_shown(on_particles, options))["mean"].get<double>();
+  text += ": mean " + figures::fixed(mean, 2) + what.unit;
   if (field.terms > 0)
     text += "; " + std::to_string(field.terms) + " terms carry " + figures::fixed(100 * field.captured_variance, 1) +
             " % of the variance";
   return text;
 }
 
-void write(const FieldOnParticles& field, const Model& model, const figures::Stamps& stamps, const fs::path& path) {
+void write(const FieldOnParticles& field, const Model& model, const figures::Stamps& stamps,
+           const FieldOptions& options) {
+  const fs::path& path = options.out;
   const std::vector<double>& tan_phi = field.strength.properties.tan_phi;
-  const std::vector<NamedArray> arrays{{"friction_angle_deg", field.phi_deg}, {"tan_phi", tan_phi}};
+  std::vector<NamedArray> arrays{{"friction_angle_deg", field.phi_deg}, {"tan_phi", tan_phi}};
+  for (const Column& column : field.others) arrays.push_back({column.name, column.values});
   std::vector<Vec2> published = field.position;
   for (Vec2& x : published) x += model.terrain.origin;
   if (path.extension() == ".csv") return write_field_csv(path, published, arrays);
@@ -100,7 +166,15 @@ void write(const FieldOnParticles& field, const Model& model, const figures::Sta
   frame.n_soil = field.position.size();
   frame.position = field.position;
   frame.tan_phi = tan_phi;
-  const figures::Snapshot shot{&frame, figures::Colour::friction_angle, "Before the slide"};
+  const Property property = property_of(options.property);
+  if (property != Property::friction) {
+    std::vector<double> values = values_shown(field, options);
+    for (double& value : values) value *= name_of(property).factor;
+    (property == Property::cohesion      ? frame.cohesion
+     : property == Property::unit_weight ? frame.density
+                                         : frame.viscosity) = std::move(values);
+  }
+  const figures::Snapshot shot{&frame, shown_properties[index_of(property)].colour, "Before the slide"};
   figures::plot_profiles({&shot, 1}, model.terrain, model.dx, path, stamps, {.mark_front = false});
 }
 
@@ -112,11 +186,14 @@ Exit field(const FieldOptions& options) {
   const RunIdentity identity{seed ? *seed : random_seed(), options.realization};
   const FieldOnParticles on_particles = field_on(problem, identity);
   const FieldSummary& of = on_particles.strength.summary;
+  if (property_of(options.property) != Property::friction &&
+      std::ranges::find(of.properties, options.property, &PropertySummary::name) == of.properties.end())
+    throw ConfigError("/random_field", "does not draw " + options.property + ", which --property names");
   std::string source = "Talus " + version;
   if (identity.realization) source += "  ·  seed " + std::to_string(identity.seed);
   source += "  ·  case " + loaded.hash;
   if (!options.out.empty())
-    write(on_particles, problem.model, {problem.title, subtitle(of, options), source}, options.out);
+    write(on_particles, problem.model, {problem.title, subtitle(on_particles, options), source}, options);
   const Json numbers = summary(on_particles, identity);
   if (options.json) {
     std::cout << numbers.dump(2) << "\n";
@@ -128,6 +205,11 @@ Exit field(const FieldOptions& options) {
                "%zu particles, friction angle %.2f to %.2f deg, mean %.2f; %lld terms carry %.1f %% of the variance\n",
                on_particles.position.size(), phi["min"].get<double>(), phi["max"].get<double>(),
                phi["mean"].get<double>(), static_cast<long long>(of.terms), 100.0 * of.captured_variance);
+  for (const Column& column : on_particles.others) {
+    const Json extent = extent_of(column.values);
+    std::fprintf(stderr, "%s %.4g to %.4g, mean %.4g\n", column.name.c_str(), extent["min"].get<double>(),
+                 extent["max"].get<double>(), extent["mean"].get<double>());
+  }
   return Exit::ok;
 }
 
@@ -136,7 +218,7 @@ Exit field(const FieldOptions& options) {
 void add_field(CLI::App& app, Action& action) {
   auto options = std::make_shared<FieldOptions>();
   CLI::App* verb =
-      app.add_subcommand("field", "Write the friction angle of one realization as .csv, .vtkhdf, .svg or .png");
+      app.add_subcommand("field", "Write the random field of one realization as .csv, .vtkhdf, .svg or .png");
   add_case(*verb, options->case_file);
   verb->add_option("--out", options->out, "Output file; the format is taken from the extension; optional with --json")
       ->type_name("FILE")
@@ -151,6 +233,11 @@ void add_field(CLI::App& app, Action& action) {
                    "Standard normal coefficients instead of drawn ones: one per line, or a CSV column xi")
       ->type_name("FILE")
       ->excludes(realization);
+  std::set<std::string> names;
+  for (const PropertyName& name : property_names) names.emplace(name.key);
+  verb->add_option("--property", options->property, "Random property that a picture shows; tables have all of them")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
   add_overrides(*verb, options->overrides);
   verb->add_flag("--json", options->json, "Print a summary with the coefficients as JSON");
   set_footer(*verb, {exit_text::bad_case, exit_text::io},

@@ -1,10 +1,12 @@
 #pragma once
-// What random field of the friction angle a study asks for.
+// What random field of the soil a study asks for.
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
 #include "math/vec2.hpp"
+#include "random_field/property_spec.hpp"
 
 namespace talus {
 
@@ -13,8 +15,8 @@ enum class Truncation { largest, diagonal, variance_share };
 enum class RootIntervals { complete, paper };  ///< each mode once | [Z20] Eqs. 15, 21 as printed: modes 1 4 5 8 9 ...
 enum class FieldSampler { karhunen_loeve, circulant_embedding };
 
-/// ln(tan phi) = mu + sigma Z(x), Z a standard Gaussian field with covariance exp(-|dx|/ell_x - |dy|/ell_y). [Z20] Eqs.
-/// 11-23.
+/// Without `properties`: ln(tan phi) = mu + sigma Z(x), Z a standard Gaussian field with covariance exp(-|dx|/ell_x -
+/// |dy|/ell_y). [Z20] Eqs. 11-23.
 struct FieldSpec {
   FieldDirection direction = FieldDirection::xy;
   double ell_x = 1.0;               ///< correlation length along x [m], > 0 (half the scale of fluctuation)
@@ -31,6 +33,17 @@ struct FieldSpec {
   std::optional<Box> domain = {};           ///< where the modes are solved [m]; unset: the bounding box of the slide
   std::vector<double> xi = {};              ///< given standard normal coefficients instead of drawn ones; empty: drawn
   std::optional<double> grid_spacing = {};  ///< of the circulant embedding [m]; unset: a tenth of ell along each axis
+  std::vector<PropertySpec> properties = {};  ///< in the order of Property; empty: friction by mu, mean and sigma
+  std::vector<PropertyCorrelation> correlation = {};  ///< of pairs of them; those that are not listed have none
+
+  /// Whether something is drawn that varies from point to point.
+  bool in_space() const {
+    return properties.empty() ? sigma != 0.0 : std::ranges::any_of(properties, &PropertySpec::in_space);
+  }
+  /// Whether one realization differs from another.
+  bool random() const {
+    return properties.empty() ? sigma != 0.0 : std::ranges::any_of(properties, &PropertySpec::random);
+  }
   bool along_x() const { return direction != FieldDirection::y; }  ///< whether the field varies along x
   bool along_y() const { return direction != FieldDirection::x; }
   bool operator==(const FieldSpec&) const = default;

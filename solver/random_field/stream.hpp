@@ -11,6 +11,12 @@ namespace talus {
 
 /// What a draw is for; draws of different streams are independent.
 enum class Stream : std::uint32_t { field = 0, strata = 1, jitter = 2 };
+inline constexpr std::uint32_t stream_kinds = 3;
+
+/// The stream of this kind that belongs to a field: its number times stream_kinds further on.
+constexpr Stream stream_of(Stream kind, std::uint32_t field) {
+  return static_cast<Stream>(static_cast<std::uint32_t>(kind) + stream_kinds * field);
+}
 
 /// Two independent uniform numbers in the open interval (0, 1), of 52 bits each.
 /// @param index  realization, or place in a permutation
@@ -18,13 +24,14 @@ enum class Stream : std::uint32_t { field = 0, strata = 1, jitter = 2 };
 std::array<double, 2> uniforms(std::uint64_t seed, std::uint64_t index, std::uint32_t mode, Stream stream);
 
 /// The standard normal coefficient of a mode of a realization (Box & Muller 1958).
-double standard_normal(std::uint64_t seed, std::uint64_t realization, std::uint32_t mode);
+/// @param field  number of the field, where a realization has several
+double standard_normal(std::uint64_t seed, std::uint64_t realization, std::uint32_t mode, std::uint32_t field = 0);
 
 /// Latin hypercube sample of the `modes` leading coefficients (McKay, Beckman & Conover 1979): over the realizations
 /// 0 .. realizations-1, each coefficient falls once in each of as many intervals of equal probability. Modes are paired
 /// at random. Depends on the number of realizations by nature. Takes O(realizations) time a mode.
 /// @throws std::invalid_argument unless realization < realizations
 std::vector<double> stratified_normals(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization,
-                                       std::size_t modes);
+                                       std::size_t modes, std::uint32_t field = 0);
 
 }  // namespace talus

@@ -46,8 +46,10 @@ SlideMass slide_mass(const Model& model, const ParticlePlan& plan);
 
 /// Properties of the soil particles of a plan, in its order: those that may vary within a material.
 struct SoilProperties {
-  std::vector<double> tan_phi;  ///< tangent of the friction angle [-], >= 0
-  std::vector<double> c;        ///< cohesion [Pa], >= 0
+  std::vector<double> tan_phi;    ///< tangent of the friction angle [-], >= 0
+  std::vector<double> c;          ///< cohesion [Pa], >= 0
+  std::vector<double> rho0 = {};  ///< reference density [kg/m3], > 0; empty: that of each material
+  std::vector<double> eta = {};   ///< viscosity once it has yielded [Pa s], >= 0; empty: that of each material
 };
 /// The properties that the materials give.
 SoilProperties material_properties(const Model& model, const ParticlePlan& plan);
