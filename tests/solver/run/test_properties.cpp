@@ -102,6 +102,51 @@ TEST(Properties, AStatedMeanStandsForTheMaterial) {
               1e-9);
 }
 
+/// Mean over four realizations of the front of 99 % of the mass after 3 s [m].
+double mean_front(const Json& properties) {
+  const Case c = slope_with(properties);
+  const ParticlePlan plan = plan_particles(c.model);
+  double sum = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    const Strength soil = strength(c.model, c.field, c.study, plan, {.seed = 3, .realization = k});
+    Simulation s(soil.model, plan, soil.properties);
+    while (!s.finished()) s.step(c.model.time.end);
+    sum += s.result().measures.front_mass_99 / 4;
+  }
+  return sum;
+}
+
+// Stronger, more cohesive and more viscous soil stops nearer; heavier soil of the same cohesion runs farther. Same
+// draws, mean changed; every property is a field, so that density and viscosity are those of the particles.
+TEST(Properties, EachActsInItsDirection) {
+  const auto front = [](const char* key, Json property) { return mean_front({{key, std::move(property)}}); };
+  EXPECT_GT(front("friction", {{"mean_deg", 20}, {"cov", 0.1}}), front("friction", {{"mean_deg", 30}, {"cov", 0.1}}));
+  EXPECT_GT(front("cohesion", {{"mean_kPa", 1}, {"cov", 0.3}}), front("cohesion", {{"mean_kPa", 8}, {"cov", 0.3}}));
+  EXPECT_GT(front("viscosity", {{"mean_Pa_s", 300}, {"cov", 0.3}}),
+            front("viscosity", {{"mean_Pa_s", 3000}, {"cov", 0.3}}));
+  EXPECT_LT(front("unit_weight", {{"mean_kN_m3", 10}, {"cov", 0.05}}),
+            front("unit_weight", {{"mean_kN_m3", 30}, {"cov", 0.05}}));
+}
+
+// A density that varies in space: the mass is that of the particles, and is compared with outlines of the same density.
+TEST(Properties, MassAndStepFollowTheDensityOfEachParticle) {
+  const Case c = slope_with({{"unit_weight", {{"cov", 0.1}}}});
+  const ParticlePlan plan = plan_particles(c.model);
+  const Strength soil = strength(c.model, c.field, c.study, plan, {.seed = 3, .realization = 1});
+  ASSERT_EQ(soil.properties.rho0.size(), plan.soil.size());
+  const Simulation s(soil.model, plan, soil.properties);
+  double mass = 0.0;
+  for (std::size_t i = 0; i < plan.soil.size(); ++i) mass += soil.properties.rho0[i] * 0.25 * plan.soil[i].cells;
+  const SlideMass of = s.result().mass;
+  EXPECT_NEAR(of.filled, mass, 1e-9 * mass);
+  EXPECT_NEAR(of.filled / of.outline, slide_mass(c.model, plan).filled / slide_mass(c.model, plan).outline, 1e-12);
+  const double least = std::ranges::min(soil.properties.rho0);
+  const StepBounds drawn = step_bounds(soil.model, s.constants(), s.soil()),
+                   mean = step_bounds(soil.model, s.constants());
+  EXPECT_NEAR(drawn.c / mean.c, std::sqrt(2000 / least), 1e-12);
+  EXPECT_NEAR(drawn.nu / mean.nu, 2000 / least, 1e-12);
+}
+
 // Given coefficients are used as they are, and their number is checked against all properties.
 TEST(Properties, GivenCoefficients) {
   const Json two = {{"friction", {{"cov", 0.1}}}, {"cohesion", {{"cov", 0.3}, {"varies", "once"}}}};
