@@ -53,7 +53,7 @@ inline void vary_properties(Soil& soil) {
     soil.rho0[i] = 2000 * ratio;
     soil.rho[i] *= ratio;
     soil.m[i] *= ratio;
-    soil.eta[i] = 60 + 40 * std::cos(2.3 * static_cast<double>(soil.id[i]));
+    soil.eta[i] = 30 + 20 * std::cos(2.3 * static_cast<double>(soil.id[i]));
   }
 }
 

@@ -183,10 +183,10 @@ Rates brute_force(const FlowConstants& k, Soil s, const WallParticles& w) {
       sxy = c * z * nn - c * z * tt + (c * c - z * z) * nt;
     }
     const WallFriction& of_wall = k.boundaries[static_cast<std::size_t>(w.boundary[q])];
-    if (of_wall.tan_phi < tan_phi || of_wall.c < cohesion) {
+    const double limit =
+        factor * (std::min(cohesion, of_wall.c) + std::min(tan_phi, of_wall.tan_phi) * std::max(r.wall_p[q], 0.0));
+    if (limit < yield_wall) {  // without pressure, a smaller friction angle makes no weaker wall
       const double nx = w.nx[q], ny = w.ny[q], shear = nx * ny * (syy - sxx) + (nx * nx - ny * ny) * sxy;
-      const double limit =
-          factor * (std::min(cohesion, of_wall.c) + std::min(tan_phi, of_wall.tan_phi) * std::max(r.wall_p[q], 0.0));
       const double back = shear - std::clamp(shear, -limit, limit);
       sxx += 2 * nx * ny * back;
       syy -= 2 * nx * ny * back;
