@@ -2,12 +2,14 @@
 #include <cmath>
 #include <limits>
 
+#include "case/field_materials.hpp"
 #include "case/outline.hpp"
 #include "case/overlay.hpp"
 #include "case/sections.hpp"
 #include "math/angle.hpp"
 #include "particles/geometry.hpp"
 #include "particles/ground.hpp"
+#include "random_field/property_fields.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/reach.hpp"
 #include "support/text.hpp"
@@ -171,6 +173,36 @@ void check_covariance(const FieldSpec& f, Faults& faults) {
     faults.add("/random_field/root_intervals", "\"paper\" is for covariance exponential; allowed: complete");
 }
 
+/// Whether the number of modes is known before they are solved, and every coefficient belongs to one.
+bool counted_beforehand(const FieldSpec& f) {
+  return f.sampler == FieldSampler::karhunen_loeve && f.truncation != Truncation::variance_share &&
+         f.covariance == Covariance::exponential && f.nugget == 0.0 && f.data.empty();
+}
+
+/// Distributions and correlations that exist; coefficients as many as the properties take.
+void check_properties(const Model& model, const FieldSpec& field, Faults& faults) {
+  const std::vector<FieldMaterial> materials = field_materials(model);
+  try {
+    const PropertyLaws laws(field, materials);
+  } catch (const ConfigError& e) {
+    for (const Fault& fault : e.faults) faults.add(fault.pointer, fault.message);
+  }
+  for (const PropertySpec& p : field.properties)
+    if (p.property == Property::viscosity)
+      for (const Material& m : model.materials)
+        if (m.mu_i && p.applies_to(m.name))
+          faults.add(property_pointer(p.property),
+                     "material " + in_quotes(m.name) + " has mu_i instead of a viscosity");
+  if (!field.data.empty())
+    faults.add("/random_field/data", "are for the short form of the field, log_stdev or cov_tan_phi");
+  if (field.trend != 0.0)
+    faults.add("/random_field/trend_deg_per_m", "is for the short form of the field, log_stdev or cov_tan_phi");
+  const std::size_t needed = coefficients(property_blocks(field, materials, static_cast<std::size_t>(field.terms)));
+  if (counted_beforehand(field) && !field.xi.empty() && field.xi.size() != needed)
+    faults.add("/random_field/xi", "has " + std::to_string(field.xi.size()) + " coefficients, the properties take " +
+                                       std::to_string(needed));
+}
+
 }  // namespace
 
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults) {
@@ -193,16 +225,18 @@ void check_choices(const Case& c, Faults& faults) {
         "/rheology/shear_rate",
         "\"paper\" is the norm of [Z20] Eq. 7, with which mu(I) is not defined; material mu_i needs \"consistent\"");
   if (!c.field) return;
+  check_covariance(*c.field, faults);
+  if (!c.field->properties.empty()) {
+    check_properties(c.model, *c.field, faults);
+    return;
+  }
   if (!c.field->mu && !c.field->mean)
     for (const Material& m : c.model.materials)
       if (m.phi <= 0.0)
         faults.add("/random_field",
                    "needs log_mean or mean_tan_phi: material " + in_quotes(m.name) + " has no friction angle to vary");
-  check_covariance(*c.field, faults);
-  const bool counted =
-      c.field->sampler == FieldSampler::karhunen_loeve && c.field->truncation != Truncation::variance_share &&
-      c.field->covariance == Covariance::exponential && c.field->nugget == 0.0 && c.field->data.empty();
-  if (counted && !c.field->xi.empty() && c.field->xi.size() != static_cast<std::size_t>(c.field->terms))
+  if (counted_beforehand(*c.field) && !c.field->xi.empty() &&
+      c.field->xi.size() != static_cast<std::size_t>(c.field->terms))
     faults.add("/random_field/xi", "has " + std::to_string(c.field->xi.size()) + " coefficients, terms is " +
                                        std::to_string(c.field->terms));
 }
@@ -240,7 +274,6 @@ void warn_of_thin_front(const Model& model, std::vector<Fault>& warnings) {
 std::vector<Fault> find_warnings(const Case& c) {
   std::vector<Fault> warnings;
   const Model& model = c.model;
-  warn_of_unlikely_values(model, warnings);
   if (!model.terrain.closed) warn_of_overhangs(model.terrain, warnings);
   if (!model.terrain.closed) warn_of_open_ends(model, warnings);
   warn_of_a_slide_in_the_air(model, warnings);

@@ -61,6 +61,10 @@ SlideInput read_slide(ObjectReader& in, const std::filesystem::path& directory, 
 void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& directory, const SlideInput& slide,
                   double dx, SourceLocations& origins);
 
+// read_properties.cpp
+/// random_field.properties and random_field.correlation.
+void read_properties(ObjectReader& in, FieldSpec& spec);
+
 // read_statistics.cpp
 /// @param dx  particle spacing [m]; the default of cell_average depends on it
 /// @param directory  where CSV files lie
@@ -104,6 +108,7 @@ void trim_slide(Model& model, const SourceLocations& origins, std::vector<Fault>
 
 // unlikely_values.cpp
 /// Warnings of values in the allowed range that no soil has, with the unit that was probably meant.
-void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings);
+/// @param c  its materials as they are written
+void warn_of_unlikely_values(const Case& c, std::vector<Fault>& warnings);
 
 }  // namespace talus

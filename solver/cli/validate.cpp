@@ -52,10 +52,7 @@ Demand measure(const Case& c) {
   d.steps = std::ceil(c.model.time.end / d.step * (1.0 - 1e-12));
   d.memory = run_memory(static_cast<double>(d.soil + d.wall));
   d.flow = flow_constants(c.model);
-  if (c.field) {
-    const RandomField field = make_field(c.model, *c.field);
-    d.field = field_summary(*c.field, field);
-  }
+  if (c.field) d.field = field_summary(c.model, *c.field, plan);
   d.warnings = warnings_before_run(c, plan, d.field.value_or(FieldSummary{}));
   return d;
 }
@@ -145,6 +142,10 @@ Json numerics_json(const FlowConstants& flow) {
   return {{"sound_speed_m_s", flow.c_s}, {"shear_modulus_Pa", moduli}};
 }
 
+const PropertyName& unit_of(const PropertySummary& p) {
+  return *std::ranges::find(property_names, p.name, &PropertyName::key);
+}
+
 Json to_json(const LoadedCase& loaded, const Demand& d) {
   Json out = {{"valid", true},
               {"title", loaded.value.title},
@@ -163,9 +164,22 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
   if (d.field)
     out["field"] = {
         {"terms", d.field->terms}, {"captured_variance", d.field->captured_variance}, {"cov_tan_phi", d.field->cov}};
+  if (d.field)
+    for (const PropertySummary& p : d.field->properties)
+      out["field"]["properties"][p.name] = {{"mean_" + std::string(unit_of(p).suffix), p.mean}, {"cov", p.cov}};
   if (lacks_rate_dependence(model)) out["rate_dependence_by_soil"] = proposals_json(model);
   out["warnings"] = to_json(loaded.warnings);
   return out;
+}
+
+void print_field(const FieldSummary& field) {
+  std::printf("captured variance  %.2f %% with %lld terms", 100.0 * field.captured_variance,
+              static_cast<long long>(field.terms));
+  if (field.properties.empty()) std::printf("; coefficient of variation of tan(phi) %.3g", field.cov);
+  std::printf("\n");
+  for (const PropertySummary& p : field.properties)
+    std::printf("%-18s mean %.4g %s, coefficient of variation %.3g\n", p.name.c_str(), p.mean,
+                unit_of(p).unit.empty() ? "(tangent)" : std::string(unit_of(p).unit).c_str(), p.cov);
 }
 
 void print_end(const char* name, bool wall, Vec2 end, double wall_top) {
@@ -204,9 +218,7 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
               loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");
   std::printf("steps              about %.0f to %.4g s\n", d.steps, loaded.value.model.time.end);
   std::printf("memory             about %.0f MB\n", d.memory / 1e6);
-  if (d.field)
-    std::printf("captured variance  %.2f %% with %lld terms; coefficient of variation of tan(phi) %.3g\n",
-                100.0 * d.field->captured_variance, static_cast<long long>(d.field->terms), d.field->cov);
+  if (d.field) print_field(*d.field);
   std::printf("case hash          %s\n", loaded.hash.c_str());
   if (lacks_rate_dependence(loaded.value.model)) print_proposals(loaded.value.model);
   print_warnings(loaded.warnings);

@@ -70,6 +70,20 @@ inline constexpr std::array<Field, 8> fields = {{
 
 inline constexpr const Field& points = fields[0];
 
+/// Arrays that a file has where its first frame has them: properties that vary within a material.
+struct OptionalField {
+  Field field;
+  std::vector<double> Frame::*array;
+};
+inline constexpr std::array<OptionalField, 2> optional_fields = {
+    {{scalar_field<&Frame::cohesion>("VTKHDF/PointData/cohesion_Pa"), &Frame::cohesion},
+     {scalar_field<&Frame::viscosity>("VTKHDF/PointData/viscosity_Pa_s"), &Frame::viscosity}}};
+
+/// The arrays that change with time, of a frame or of a file: all of `fields`, then those of optional_fields that are
+/// there.
+std::vector<Field> fields_of(const Frame& frame);
+std::vector<Field> fields_of(hid_t root);
+
 /// The arrays of a frame, all of one length.
 template <class F>
 auto arrays_of(F& f) {
@@ -103,6 +117,8 @@ void truncate_steps(hid_t root, std::size_t steps, std::size_t n);
 /// @param particles  points at each step
 /// @param times      of the steps [s]
 /// @param far        the points are of double precision
-std::string xdmf_document(const std::string& file, std::size_t particles, std::span<const double> times, bool far);
+/// @param arrays     of the file
+std::string xdmf_document(const std::string& file, std::size_t particles, std::span<const double> times, bool far,
+                          std::span<const Field> arrays = fields);
 
 }  // namespace talus::vtkhdf

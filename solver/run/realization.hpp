@@ -1,5 +1,5 @@
 #pragma once
-// One realization: from its identity to the friction angle of every soil particle.
+// One realization: from its identity to the properties of every soil particle.
 
 #include <cstdint>
 #include <optional>
@@ -21,9 +21,10 @@ struct RunIdentity {
   bool operator==(const RunIdentity&) const = default;
 };
 
-/// The strength of every soil particle.
+/// The soil of a realization.
 struct Strength {
   SoilProperties properties;  ///< of the soil particles, in the order of the plan
+  Model model;                ///< the case's, its materials with what is drawn once for a whole material
   std::vector<double> xi;     ///< coefficients used; empty without a random field
   FieldSummary summary;
 };
@@ -46,13 +47,18 @@ struct FieldSpread {
 };
 FieldSpread field_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan);
 
-/// What is known of a field before anything is drawn: all of the summary but the mean friction angle.
-FieldSummary field_summary(const FieldSpec& spec, const RandomField& field);
+/// A property of the soil particles in SI units, in the order of the plan: of the particle, or of its material.
+std::vector<double> property_values(const Strength& soil, const ParticlePlan& plan, Property property);
 
-/// tan(phi) = exp(mu + sigma Z(x)) (1 + perturbation) where the case has a random field, tan(phi) of the material
-/// otherwise. [Z20] Eq. 12. Where the case gives the mean of tan(phi), mu at each particle is such that tan(phi) has
-/// this mean there (log_medians); the median run then has the median at each particle. With Latin hypercube sampling
-/// the draws depend on StudySpec::realizations, as they must.
+/// What is known of a field before anything is drawn: all of the summary but what is of a run.
+/// @throws ConfigError when the field cannot be built
+FieldSummary field_summary(const Model& model, const FieldSpec& spec, const ParticlePlan& plan);
+
+/// In the short form of the field tan(phi) = exp(mu + sigma Z(x)) (1 + perturbation), [Z20] Eq. 12; tan(phi) of the
+/// material without a field. Where the case gives the mean of tan(phi), mu at each particle is such that tan(phi) has
+/// this mean there (log_medians); the median run then has the median at each particle. With FieldSpec::properties each
+/// of them as PropertyFields draws it; `perturbation` changes tan(phi) too. With Latin hypercube sampling the draws
+/// depend on StudySpec::realizations, as they must.
 /// @throws ConfigError when the field cannot be built or the realization lies outside a Latin hypercube study
 Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study,
                   const ParticlePlan& plan, const RunIdentity& identity);

@@ -10,7 +10,8 @@
 
 namespace talus {
 
-/// All particles at one time, in order of id: soil 0..n_soil-1, then walls. Every array has the same length.
+/// All particles at one time, in order of id: soil 0..n_soil-1, then walls. Every array has the same length; cohesion
+/// and viscosity are empty where they do not vary within the materials.
 struct Frame {
   double time = 0.0;                          ///< [s]
   std::int64_t step = 0;                      ///< steps made
@@ -25,6 +26,8 @@ struct Frame {
   std::vector<double> shear_rate;             ///< gamma_dot [1/s]
   std::vector<double> phi_stdev;              ///< of the friction angle over realizations [rad]; empty in a run
   std::vector<std::array<double, 4>> stress;  ///< sigma xx, yy, zz, xy [Pa], positive in tension
+  std::vector<double> cohesion;               ///< [Pa]; 0 for walls
+  std::vector<double> viscosity;              ///< once it has yielded [Pa s]; 0 for walls
 };
 
 }  // namespace talus

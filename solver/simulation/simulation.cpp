@@ -42,7 +42,7 @@ Simulation::Simulation(const Model& model, const ParticlePlan& plan, const SoilP
                model.g, plan.soil.size()),
       energy_account_(constants(), soil_),
       rest_rule_(model.time.stop_at_rest),
-      bounds_(step_bounds(model, constants())),
+      bounds_(step_bounds(model, constants(), soil_)),
       max_acceleration_(norm(model.g)) {}
 
 void Simulation::step(double until) {

@@ -79,6 +79,7 @@ class Simulation {
   std::int64_t at_open_end() const;
   void add_friction_facts(RunFacts& f) const;
   SlideMass mass() const;
+  void add_varying_properties(Frame& f) const;
 
   Model model_;
   Soil soil_;

@@ -1,0 +1,22 @@
+#pragma once
+// The materials of a model and the random properties of its field: one as the other sees it.
+
+#include <vector>
+
+#include "random_field/property_laws.hpp"
+#include "simulation/model.hpp"
+
+namespace talus {
+
+/// What the random field needs to know of the materials, in their order.
+std::vector<FieldMaterial> field_materials(const Model& model);
+
+/// Gives materials a value of a property in SI units.
+void set_property(Material& m, Property p, double value);
+
+/// Where a property states its mean, the mean takes the place of the materials' value: time step, warnings and all else
+/// that knows no realization are those of the mean soil.
+/// @param field  without faults
+void use_property_means(Model& model, const FieldSpec& field);
+
+}  // namespace talus
