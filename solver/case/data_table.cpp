@@ -30,11 +30,12 @@ struct Columns {
 /// What a heading stands for: the index in Columns, or none. "error of phi" is an error.
 std::size_t kind_of(const std::string& heading) {
   const std::vector<std::string> words = words_of(heading);
-  const WordList names[] = {distance_names, elevation_names, value_names};
+  const WordList names[] = {distance_names, elevation_names};
   if (!first_of(words, error_names).empty()) return 3;
   if (!first_of(words, value_names).empty()) return 2;
   for (std::size_t k = 0; k < 2; ++k)
     if (contains(names[k], words.front())) return k;
+  if (!first_of(words, depth_names).empty()) return 1;  // which is refused
   return none;
 }
 

@@ -82,7 +82,7 @@ void read_table(const std::string& text, const std::string& name, Faults& faults
 }
 
 void declare_data(ObjectReader& in) {
-  const Json row = {{"type", "array"}, {"minItems", 4}, {"maxItems", 4}, {"items", {{"type", "number"}}}};
+  const Json row = {{"type", "array"}, {"minItems", 4}, {"maxItems", 4}, {"items", number_schema(coordinate)}};
   in.declare("data", {{"type", "array"}, {"minItems", 1}, {"maxItems", most_data}, {"items", row}},
              {"Measured friction angles, [[x, y, value, standard error], ...], from boreholes and soundings inside the "
               "rectangle of the field. Every realization meets them within their errors (error 0: exactly); mean and "

@@ -80,7 +80,7 @@ void read_correlation(ObjectReader& in, FieldSpec& spec) {
        "exp(-|dx|/lx - |dy|/ly); exponential_isotropic: exp(-r); squared_exponential: exp(-r^2); matern_3_2: (1 + "
        "sqrt(3) r) exp(-sqrt(3) r); matern_5_2: (1 + sqrt(5) r + 5 r^2/3) exp(-sqrt(5) r); cosine_exponential: "
        "exp(-|dx|/lx - |dy|/ly) cos(dx/lx) cos(dy/ly).",
-       "[Z20] Eq. 13; Vanmarcke 1983; Rasmussen & Williams 2006 for matern"});
+       "[Z20] Eq. 13; Vanmarcke 1983; Rasmussen & Williams 2006 for matern", "exponential"});
   if (spec.covariance == Covariance::exponential) in.remove_record("covariance");  // keeps the hash of earlier cases
   const Lengths ell = read_lengths(in, "correlation_length", "Correlation length", "site investigation; [Z20] Table 4");
   const Lengths theta =
@@ -107,13 +107,13 @@ void read_correlation(ObjectReader& in, FieldSpec& spec) {
   in.number("dip_deg", dip, {"deg", -90.0, 90.0},
             {"Angle by which the bedding falls towards +x: the axes of the correlation lengths, and of direction, are "
              "turned by it.",
-             "geological mapping"});
+             "geological mapping", "0"});
   spec.dip = radians(dip);
   if (dip == 0.0) in.remove_record("dip_deg");
   in.number("nugget", spec.nugget, {"", 0.0, 1.0, false, true},
             {"Share of the variance that varies from particle to particle without correlation. It is drawn for every "
              "particle, so that cell_average does not reduce it and another spacing draws other values.",
-             "site investigation"});
+             "site investigation", "0"});
   if (spec.nugget == 0.0) in.remove_record("nugget");
 }
 
@@ -227,7 +227,7 @@ void read_field(ObjectReader& in, FieldSpec& spec, double dx, const std::filesys
   in.number("trend_deg_per_m", trend, {"deg/m", -10.0, 10.0},
             {"Increase of the median friction angle with every metre below the ground surface before the slide; the "
              "angle at the surface is that of log_mean or the material (with mean_tan_phi: of the mean).",
-             "laboratory, soundings"});
+             "laboratory, soundings", "0"});
   spec.trend = radians(trend);
   if (trend == 0.0) in.remove_record("trend_deg_per_m");
 }

@@ -159,6 +159,8 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   mutations.spoil(example("surfaces"));
   mutations.spoil(example("joined"));
   mutations.spoil(example("mu-i"));
+  mutations.spoil(example("field"));
+  mutations.spoil(example("field-data"));
   // The forms that the examples do not hold: the other file, the other step.
   json other = example("surfaces");
   other["slide"] = {{"ground_surface_m", {{0, 20}, {6, 20}, {24, 6}}}, {"slip_surface_csv", "case-bed.csv"}};

@@ -61,10 +61,9 @@ TEST(CaseSchema, ClosesEveryObject) {
 TEST(CaseSchema, UnitsStandInTheKeys) {
   const test::SchemaCheck schema("case");
   const std::pair<const char*, const char*> suffixes[] = {
-      {"_kg_m3", "kg/m3"}, {"_m_s2", "m/s2"}, {"_m_s", "m/s"},           {"_Pa_s", "Pa s"},
-      {"_Pa", "Pa"},       {"_deg", "deg"},   {"_1_s", "1/s"},           {"_mm", "mm"},
-      {"_kN_m3", "kN/m3"}, {"_kPa", "kPa"},   {"_spacings", "spacings"}, {"_m", "m"},
-      {"_s", "s"},         {"", "-"}};
+      {"_deg_per_m", "deg/m"}, {"_kg_m3", "kg/m3"},       {"_m_s2", "m/s2"}, {"_m_s", "m/s"}, {"_Pa_s", "Pa s"},
+      {"_Pa", "Pa"},           {"_deg", "deg"},           {"_1_s", "1/s"},   {"_mm", "mm"},   {"_kN_m3", "kN/m3"},
+      {"_kPa", "kPa"},         {"_spacings", "spacings"}, {"_m", "m"},       {"_s", "s"},     {"", "-"}};
   for_each_key(schema.document(), "", [&](const std::string& pointer, const json& key, bool) {
     if (key["type"] != "number") return;
     for (const auto& [suffix, unit] : suffixes)

@@ -23,8 +23,7 @@ Case slope(const Json& field) {
   return load_case(document, "").value;
 }
 
-std::vector<double> angles_deg(const Case& c, std::int64_t realization) {
-  const ParticlePlan plan = plan_particles(c.model);
+std::vector<double> angles_deg(const Case& c, std::int64_t realization, const ParticlePlan& plan) {
   std::vector<double> out;
   for (const double t :
        strength(c.model, c.field, c.study, plan, {.seed = 5, .realization = realization}).properties.tan_phi)
@@ -50,7 +49,7 @@ TEST(FieldOfACase, RealizationsMeetExactData) {
         Json{{"data", data}, {"mean_tan_phi", 0.4}, {"terms", 30}},
         Json{{"data", data}, {"trend_deg_per_m", 1.0}, {"covariance", "squared_exponential"}, {"dip_deg", 20}}})
     for (const std::int64_t realization : {0, 1}) {
-      const std::vector<double> phi = angles_deg(slope(field), realization);
+      const std::vector<double> phi = angles_deg(slope(field), realization, plan);
       EXPECT_NEAR(phi[one], 31.5, 1e-6) << field.dump();
       EXPECT_NEAR(phi[other], 19.0, 1e-6) << field.dump();
     }
@@ -61,12 +60,14 @@ TEST(FieldOfACase, RealizationsMeetExactData) {
 TEST(FieldOfACase, RealizationsScatterAboutAnUncertainDatum) {
   const Case plain = slope(Json::object());
   const std::size_t at = particle_nearest(plain, {4, 4});
-  const Vec2 x = plan_particles(plain.model).soil[at].x;
-  const Case c = slope({{"data", {{x.x, x.y, 30.0, 2.0}}}, {"sampler", "circulant_embedding"}});
+  const ParticlePlan plan = plan_particles(plain.model);
+  const Vec2 x = plan.soil[at].x;
+  const Case c =
+      slope({{"data", {{x.x, x.y, 30.0, 2.0}}}, {"sampler", "circulant_embedding"}, {"grid_spacing_m", 0.5}});
   constexpr int n = 2000;
   double sum = 0, squares = 0;
   for (int k = 0; k < n; ++k) {
-    const double value = std::log(std::tan(radians(angles_deg(c, k)[at])));
+    const double value = std::log(std::tan(radians(angles_deg(c, k, plan)[at])));
     sum += value;
     squares += value * value;
   }
@@ -88,12 +89,15 @@ TEST(FieldOfACase, TheTrendRaisesTheMedianWithDepth) {
   }
 }
 
-// Averaging over cells narrows the distribution of tan(phi) and keeps its mean: 2,000 realizations, z = 5.
+// Averaging over cells narrows the distribution of tan(phi) and keeps its mean: 1,000 realizations, z = 5.
 TEST(FieldOfACase, AveragingKeepsTheMean) {
-  const Case c = slope({{"correlation_length_m", 0.5}, {"cov_tan_phi", 0.5}, {"sampler", "circulant_embedding"}});
+  const Case c = slope({{"correlation_length_m", 0.5},
+                        {"cov_tan_phi", 0.5},
+                        {"sampler", "circulant_embedding"},
+                        {"grid_spacing_m", 0.25}});
   ASSERT_TRUE(c.field->cell_average);
   const ParticlePlan plan = plan_particles(c.model);
-  constexpr int n = 2000;
+  constexpr int n = 1000;
   double sum = 0, squares = 0;
   for (int k = 0; k < n; ++k) {
     double mean = 0;
@@ -104,11 +108,12 @@ TEST(FieldOfACase, AveragingKeepsTheMean) {
   }
   const double mean = sum / n, error = std::sqrt((squares / n - mean * mean) / n);
   EXPECT_NEAR(mean, std::tan(radians(25.0)) * std::sqrt(1 + 0.25), 5 * error);  // exp(mu + sigma^2/2)
-  EXPECT_LT(5 * error, 0.01);
+  EXPECT_LT(5 * error, 0.015);  // the median kept instead would be 0.026 lower
 }
 
 TEST(FieldOfACase, SpreadIsThatOfTheRealizations) {
-  const Case c = slope({{"data", {{4.0, 4.0, 30.0, 0.5}}}, {"covariance", "matern_3_2"}, {"terms", 40}});
+  const Case c =
+      slope({{"data", {{4.0, 4.0, 30.0, 0.5}}}, {"covariance", "matern_3_2"}, {"sampler", "circulant_embedding"}});
   const ParticlePlan plan = plan_particles(c.model);
   const FieldSpread spread = field_spread(c.model, *c.field, plan);
   const std::size_t near = particle_nearest(c, {4, 4}), far = particle_nearest(c, {9.5, 0.3});
@@ -118,7 +123,7 @@ TEST(FieldOfACase, SpreadIsThatOfTheRealizations) {
   constexpr int n = 500;
   double sum = 0, squares = 0;
   for (int k = 0; k < n; ++k) {
-    const double phi = radians(angles_deg(c, k)[far]);
+    const double phi = radians(angles_deg(c, k, plan)[far]);
     sum += phi;
     squares += phi * phi;
   }

@@ -37,12 +37,14 @@ TEST(WarningsBeforeRun, AMassThatIsNotThatOfTheOutlines) {
 }
 
 TEST(WarningsBeforeRun, ACorrelationLengthBelowTheSpacing) {
-  const std::vector<std::string> shorter{"random_field.correlation_length_m=0.49", "random_field.terms=5000"};
+  const std::vector<std::string> shorter{"random_field.correlation_length_m=0.49", "random_field.terms=5000",
+                                         "random_field.cell_average=false"};
   EXPECT_EQ(pointers(shorter), "/random_field ");
   EXPECT_EQ(pointers({"random_field.correlation_length_m=0.51", "random_field.terms=5000"}), "");
   EXPECT_EQ(pointers({shorter[0], shorter[1], "random_field.cell_average=true"}), "");
   EXPECT_EQ(pointers({"random_field.correlation_length_m=null", "random_field.correlation_length_x_m=2",
-                      "random_field.correlation_length_y_m=0.4", "random_field.terms=5000"}),
+                      "random_field.correlation_length_y_m=0.4", "random_field.terms=5000",
+                      "random_field.cell_average=false"}),
             "/random_field ");
   EXPECT_EQ(pointers({"random_field.correlation_length_m=null", "random_field.correlation_length_x_m=2",
                       "random_field.correlation_length_y_m=0.4", "random_field.direction=x"}),
