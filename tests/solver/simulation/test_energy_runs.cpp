@@ -108,7 +108,7 @@ TEST(EnergyRuns, RandomDensityAndViscosityChangeNothing) {
   Simulation simulation(m, plan, properties);
   while (!simulation.finished()) simulation.step(m.time.end);
   EXPECT_LT(std::abs(*simulation.energy().created_share()), 0.01);
-  EXPECT_GT(simulation.energy().viscosity, 0.05 * simulation.energy().gravity_work());
+  EXPECT_GT(simulation.energy().viscosity, 0.03 * simulation.energy().gravity_work());
 }
 
 TEST(EnergyRuns, WhatIsNotStableIsFound) {
