@@ -2,22 +2,17 @@
 #include <cmath>
 #include <limits>
 
-#include "case/field_materials.hpp"
 #include "case/outline.hpp"
 #include "case/overlay.hpp"
 #include "case/sections.hpp"
-#include "math/angle.hpp"
 #include "particles/geometry.hpp"
 #include "particles/ground.hpp"
-#include "random_field/property_fields.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/reach.hpp"
 #include "support/text.hpp"
 
 namespace talus {
 namespace {
-
-constexpr double most_trend_angle = radians(89.0);  ///< as of friction_angle_deg
 
 void check_apart(const Model& model, const SourceLocations& origins, Faults& faults) {
   for (std::size_t a = 0; a < model.slide.size(); ++a)
@@ -162,47 +157,6 @@ void warn_of_unused_keys(const FieldSpec& f, std::vector<Fault>& warnings) {
     warnings.push_back({"/random_field/grid_spacing_m", "is not used: sampler is karhunen_loeve"});
 }
 
-/// Two keys that only the product modes of the separable exponential covariance have.
-void check_covariance(const FieldSpec& f, Faults& faults) {
-  if (f.covariance == Covariance::exponential || f.sampler != FieldSampler::karhunen_loeve) return;
-  if (f.truncation == Truncation::diagonal)
-    faults.add("/random_field/truncation",
-               "\"diagonal\" pairs modes along x with modes along y, which only covariance exponential has; allowed: "
-               "largest, variance_share");
-  if (f.root_intervals == RootIntervals::paper)
-    faults.add("/random_field/root_intervals", "\"paper\" is for covariance exponential; allowed: complete");
-}
-
-/// Whether the number of modes is known before they are solved, and every coefficient belongs to one.
-bool counted_beforehand(const FieldSpec& f) {
-  return f.sampler == FieldSampler::karhunen_loeve && f.truncation != Truncation::variance_share &&
-         f.covariance == Covariance::exponential && f.nugget == 0.0 && f.data.empty();
-}
-
-/// Distributions and correlations that exist; coefficients as many as the properties take.
-void check_properties(const Model& model, const FieldSpec& field, Faults& faults) {
-  const std::vector<FieldMaterial> materials = field_materials(model);
-  try {
-    const PropertyLaws laws(field, materials);
-  } catch (const ConfigError& e) {
-    for (const Fault& fault : e.faults) faults.add(fault.pointer, fault.message);
-  }
-  for (const PropertySpec& p : field.properties)
-    if (p.property == Property::viscosity)
-      for (const Material& m : model.materials)
-        if (m.mu_i && p.applies_to(m.name))
-          faults.add(property_pointer(p.property),
-                     "material " + in_quotes(m.name) + " has mu_i instead of a viscosity");
-  if (!field.data.empty())
-    faults.add("/random_field/data", "are for the short form of the field, log_stdev or cov_tan_phi");
-  if (field.trend != 0.0)
-    faults.add("/random_field/trend_deg_per_m", "is for the short form of the field, log_stdev or cov_tan_phi");
-  const std::size_t needed = coefficients(property_blocks(field, materials, static_cast<std::size_t>(field.terms)));
-  if (counted_beforehand(field) && !field.xi.empty() && field.xi.size() != needed)
-    faults.add("/random_field/xi", "has " + std::to_string(field.xi.size()) + " coefficients, the properties take " +
-                                       std::to_string(needed));
-}
-
 }  // namespace
 
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults) {
@@ -225,41 +179,7 @@ void check_choices(const Case& c, Faults& faults) {
         "/rheology/shear_rate",
         "\"paper\" is the norm of [Z20] Eq. 7, with which mu(I) is not defined; material mu_i needs \"consistent\"");
   if (!c.field) return;
-  check_covariance(*c.field, faults);
-  if (!c.field->properties.empty()) {
-    check_properties(c.model, *c.field, faults);
-    return;
-  }
-  if (!c.field->mu && !c.field->mean)
-    for (const Material& m : c.model.materials)
-      if (m.phi <= 0.0)
-        faults.add("/random_field",
-                   "needs log_mean or mean_tan_phi: material " + in_quotes(m.name) + " has no friction angle to vary");
-  if (counted_beforehand(*c.field) && !c.field->xi.empty() &&
-      c.field->xi.size() != static_cast<std::size_t>(c.field->terms))
-    faults.add("/random_field/xi", "has " + std::to_string(c.field->xi.size()) + " coefficients, terms is " +
-                                       std::to_string(c.field->terms));
-}
-
-void check_field(const Case& c, const SourceLocations& origins, Faults& faults) {
-  const FieldSpec& f = *c.field;
-  const Box box = bounding_box(c.model.slide);
-  if (!f.data.empty() && f.sigma == 0.0)
-    faults.add("/random_field/data", "cannot be met: the standard deviation of the field is 0");
-  check_field_data(origins.field_data, f.domain.value_or(box), faults);
-  if (f.trend == 0.0) return;
-  double deepest = greatest_depth(c.model.slide);
-  for (const FieldDatum& datum : f.data) deepest = std::max(deepest, depth_below_surface(c.model.slide, datum.x));
-  for (const Material& m : c.model.materials) {
-    const double phi = f.mean ? std::atan(*f.mean) : f.mu ? std::atan(std::exp(*f.mu)) : m.phi;
-    const double at_depth = phi + f.trend * deepest;
-    if (at_depth > 0.0 && at_depth < most_trend_angle) continue;
-    faults.add("/random_field/trend_deg_per_m",
-               "makes a median friction angle of " + rounded(degrees(at_depth)) + " deg at the depth of " +
-                   rounded(deepest) + " m, from " + rounded(degrees(phi)) +
-                   " deg at the surface; it must stay between 0 and " + rounded(degrees(most_trend_angle)) + " deg");
-    return;
-  }
+  check_field_choices(c, faults);
 }
 
 void warn_of_thin_front(const Model& model, std::vector<Fault>& warnings) {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "particles/geometry.hpp"
+#include "random_field/random_field.hpp"
+
 namespace talus {
 
 std::vector<FieldMaterial> field_materials(const Model& model) {
@@ -14,6 +17,28 @@ std::vector<FieldMaterial> field_materials(const Model& model) {
                          .used = std::ranges::count(model.slide, static_cast<int>(k), &SlidePart::material) > 0});
   }
   return materials;
+}
+
+double trend_factor(const Model& model, double slope, double median_tan_phi, Vec2 point) {
+  if (slope == 0.0) return 1.0;
+  return std::exp(log_trend(median_tan_phi, slope, depth_below_surface(model.slide, point)));
+}
+
+PropertyDatum property_datum(const Model& model, const FieldSpec& field, const PropertyLaws& laws,
+                             const FieldDatum& given) {
+  const auto place = std::ranges::find(field.properties, given.property, &PropertySpec::property);
+  PropertyDatum datum{.property = static_cast<std::size_t>(place - field.properties.begin()),
+                      .material = static_cast<std::size_t>(material_at(model.slide, given.x)),
+                      .x = given.x,
+                      .value = given.value,
+                      .error = given.error};
+  if (given.property != Property::friction) return datum;
+  const double t = std::tan(given.value);  // d tan(phi)/d phi = 1 + tan(phi)^2
+  const double median = laws.marginal(datum.property, datum.material).value(0.0);
+  const double trend = trend_factor(model, field.trend, median, given.x);
+  datum.value = t / trend;
+  datum.error = given.error * (1.0 + t * t) / trend;
+  return datum;
 }
 
 void set_property(Material& m, Property p, double value) {

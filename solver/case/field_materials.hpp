@@ -11,6 +11,16 @@ namespace talus {
 /// What the random field needs to know of the materials, in their order.
 std::vector<FieldMaterial> field_materials(const Model& model);
 
+/// What the trend multiplies tan(phi) with at a point of a material: tan(phi + slope depth) / tan(phi), phi being the
+/// angle of the median at the surface.
+/// @param slope  FieldSpec::trend [rad/m]
+double trend_factor(const Model& model, double slope, double median_tan_phi, Vec2 point);
+
+/// A datum of a field with properties, as it is without the trend.
+/// @param given  on one of the properties, in soil of the slide
+PropertyDatum property_datum(const Model& model, const FieldSpec& field, const PropertyLaws& laws,
+                             const FieldDatum& given);
+
 /// Gives materials a value of a property in SI units.
 void set_property(Material& m, Property p, double value);
 

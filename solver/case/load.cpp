@@ -111,7 +111,7 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
       free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/max_particles", "/walls", "/particle_placement"}))
     check_geometry(out.value.model, origins, faults);
   if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
-  if (shaped && out.value.field && free_of_faults({"/terrain", "/slide", "/random_field"}))
+  if (shaped && out.value.field && free_of_faults({"/terrain", "/slide", "/material", "/random_field"}))
     check_field(out.value, origins, faults);
   if (faults.empty()) {
     warn_of_unlikely_values(out.value, out.warnings);

@@ -41,8 +41,13 @@ constexpr std::array<PropertyText, property_count> texts{
 /// Reads the keys of one property.
 class PropertyReader {
  public:
-  PropertyReader(ObjectReader& in, PropertySpec& spec)
-      : in_(in), spec_(spec), name_(name_of(spec.property)), text_(texts[index_of(spec.property)]) {}
+  PropertyReader(ObjectReader& in, PropertySpec& spec, const std::filesystem::path& directory, FieldData& data)
+      : in_(in),
+        spec_(spec),
+        directory_(directory),
+        data_(data),
+        name_(name_of(spec.property)),
+        text_(texts[index_of(spec.property)]) {}
 
   void read() {
     in_.choice("marginal", spec_.marginal, marginals,
@@ -67,9 +72,14 @@ class PropertyReader {
     in_.exclude("cov", stdev);
     in_.exclude(key("mean"), key("log_mean"));
     check_form();
+    data_.append(read_field_data(in_, directory_, measured()));
   }
 
  private:
+  Measured measured() const {
+    if (spec_.property == Property::friction) return measured_angles;
+    return {spec_.property, "values of " + std::string(text_.words), values_, {name_.unit, 0.0, text_.hi}};
+  }
   std::string key(std::string_view stem) const { return std::string(stem) + "_" + std::string(name_.suffix); }
   bool given(const std::string& key) const { return in_.find(key) != nullptr; }
 
@@ -129,18 +139,20 @@ class PropertyReader {
 
   ObjectReader& in_;
   PropertySpec& spec_;
+  const std::filesystem::path& directory_;
+  FieldData& data_;
   const PropertyName& name_;
   const PropertyText& text_;
   const Quantity values_{name_.unit, text_.lo, text_.hi, text_.lo_open};
 };
 
-void read_all(ObjectReader& in, FieldSpec& spec) {
+void read_all(ObjectReader& in, FieldSpec& spec, const std::filesystem::path& directory, FieldData& data) {
   for (std::size_t k = 0; k < property_count; ++k) {
     const std::string_view key = property_names[k].key;
     in.object(key, "Distribution of " + std::string(texts[k].words) + ".", Absent::skip, [&](ObjectReader& section) {
       PropertySpec& property = spec.properties.emplace_back();
       property.property = static_cast<Property>(k);
-      PropertyReader(section, property).read();
+      PropertyReader(section, property, directory, data).read();
     });
   }
   for (const std::string_view name : later)
@@ -177,11 +189,12 @@ void read_pair(ObjectReader& in, PropertyCorrelation& c) {
 
 }  // namespace
 
-void read_properties(ObjectReader& in, FieldSpec& spec) {
+void read_properties(ObjectReader& in, FieldSpec& spec, const std::filesystem::path& directory,
+                     SourceLocations& origins) {
   in.object("properties",
             "The random properties of the soil. Those that are not stated are the material's. With truncation the "
             "field is scaled to its full variance at each point.",
-            Absent::skip, [&](ObjectReader& section) { read_all(section, spec); });
+            Absent::skip, [&](ObjectReader& section) { read_all(section, spec, directory, origins.field_data); });
   in.objects("correlation", {1, 6}, {"Correlation of pairs of properties; others are independent.", "laboratory"},
              "The correlation coefficient of two properties at a point.", [&](ObjectReader& pair) {
                PropertyCorrelation& c = spec.correlation.emplace_back();

@@ -185,7 +185,7 @@ void read_domain(ObjectReader& in, std::optional<Box>& domain) {
 
 void read_field(ObjectReader& in, FieldSpec& spec, double dx, const std::filesystem::path& directory,
                 SourceLocations& origins) {
-  read_properties(in, spec);
+  read_properties(in, spec, directory, origins);
   read_correlation(in, spec);
   read_marginal(in, spec);
   in.choice("direction", spec.direction, directions, {"Axes along which the field varies.", "[Z20] Eqs. 11, 23"});
@@ -220,14 +220,21 @@ void read_field(ObjectReader& in, FieldSpec& spec, double dx, const std::filesys
                      {"Grid of the circulant embedding. It does not depend on the particle spacing, and a realization "
                       "is the same field at every spacing. Particles take the value of the nearest node.",
                       "numerical", "a tenth of the correlation length along each axis"});
-  origins.field_data = read_field_data(in, directory);
+  const FieldData angles = read_field_data(in, directory, measured_angles);
+  if (!angles.values.empty() &&
+      std::ranges::count(origins.field_data.values, Property::friction, &FieldDatum::property))
+    in.fault(in.find("data") != nullptr ? "data" : "data_csv",
+             "is given beside properties.friction.data; give one list");
+  origins.field_data.append(angles);
   spec.data = origins.field_data.values;
-  if (!origins.field_data.form.empty()) origins.files.push_back(origins.field_data.form);
+  std::ranges::copy(origins.field_data.forms, std::back_inserter(origins.files));
   double trend = 0.0;
-  in.number("trend_deg_per_m", trend, {"deg/m", -10.0, 10.0},
-            {"Increase of the median friction angle with every metre below the ground surface before the slide; the "
-             "angle at the surface is that of log_mean or the material (with mean_tan_phi: of the mean).",
-             "laboratory, soundings", "0"});
+  in.number(
+      "trend_deg_per_m", trend, {"deg/m", -10.0, 10.0},
+      {"Increase of the median friction angle with every metre below the ground surface before the slide; the "
+       "angle at the surface is that of log_mean or the material (with mean_tan_phi: of the mean), with properties the "
+       "median of friction, whose coefficient of variation stays.",
+       "laboratory, soundings", "0"});
   spec.trend = radians(trend);
   if (trend == 0.0) in.remove_record("trend_deg_per_m");
 }

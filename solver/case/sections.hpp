@@ -63,7 +63,10 @@ void read_terrain(ObjectReader& in, Terrain& t, const std::filesystem::path& dir
 
 // read_properties.cpp
 /// random_field.properties and random_field.correlation.
-void read_properties(ObjectReader& in, FieldSpec& spec);
+/// @param directory  where CSV files lie
+/// @param origins  returns where the data of the properties are written
+void read_properties(ObjectReader& in, FieldSpec& spec, const std::filesystem::path& directory,
+                     SourceLocations& origins);
 
 // read_statistics.cpp
 /// @param dx  particle spacing [m]; the default of cell_average depends on it
@@ -82,10 +85,16 @@ void use_local_coordinates(Case& c);
 // checks.cpp: whether slide, bed, walls and field fit one another
 /// Slide parts apart from one another, above the bed, between its ends; as many particles as allowed.
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults);
-/// Enough wall layers, friction where a field needs it, given coefficients as many as the field takes.
+/// Enough wall layers, and what check_field_choices says.
 void check_choices(const Case& c, Faults& faults);
 
-/// Data in the rectangle of the random field, a median friction angle that the trend keeps in range.
+// check_random_field.cpp
+/// Friction where a field needs it, distributions and correlations that exist, given coefficients as many as it takes.
+/// @param c  with a field
+void check_field_choices(const Case& c, Faults& faults);
+/// Data in the rectangle of the random field that its distributions can meet, a median friction angle that the trend
+/// keeps in range.
+/// @param c  with a field
 void check_field(const Case& c, const SourceLocations& origins, Faults& faults);
 
 // check_demand.cpp: numbers within their ranges that together ask for more than any run can do

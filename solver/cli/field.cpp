@@ -4,19 +4,20 @@
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <numeric>
 #include <set>
+#include <span>
 
 #include "case/load.hpp"
+#include "cli/field_on_particles.hpp"
 #include "cli/help.hpp"
 #include "cli/verbs.hpp"
 #include "cli/xi_file.hpp"
 #include "figures/profile.hpp"
 #include "io/vtkhdf.hpp"
 #include "math/angle.hpp"
-#include "random_field/property_spec.hpp"
-#include "run/realization.hpp"
 #include "support/json.hpp"
 #include "support/seed.hpp"
 
@@ -34,53 +35,6 @@ struct FieldOptions {
   std::string property = "friction";  ///< key of property_names
   bool json = false;
 };
-
-/// A column of the output: "cohesion_kPa".
-struct Column {
-  std::string name;
-  std::vector<double> values;
-};
-
-/// The field on the particles before they move.
-struct FieldOnParticles {
-  std::vector<Vec2> position;   ///< [m]
-  std::vector<double> phi_deg;  ///< [deg]
-  std::vector<Column> others;   ///< the random properties besides friction, in the unit of their names
-  Strength strength;
-  std::optional<FieldSpread> spread;  ///< median and standard deviation over realizations, where they are asked for
-};
-
-/// The place of a property in property_names by its key, which is known.
-Property property_of(const std::string& key) {
-  return static_cast<Property>(std::ranges::find(property_names, key, &PropertyName::key) - property_names.begin());
-}
-
-/// What is shown of a property: an angle of friction, else its value in the unit of property_names.
-std::vector<double> shown(const Strength& strength, const ParticlePlan& plan, Property property) {
-  std::vector<double> values = property_values(strength, plan, property);
-  for (double& value : values)
-    value = property == Property::friction ? friction_angle_deg(value) : value / name_of(property).factor;
-  return values;
-}
-
-FieldOnParticles field_on(const Case& problem, const RunIdentity& identity, bool spread) {
-  const ParticlePlan plan = plan_particles(problem.model);
-  FieldOnParticles field{.position = {},
-                         .phi_deg = {},
-                         .others = {},
-                         .strength = strength(problem.model, problem.field, problem.study, plan, identity),
-                         .spread = {}};
-  for (const SoilPoint& point : plan.soil) field.position.push_back(point.x);
-  field.phi_deg = shown(field.strength, plan, Property::friction);
-  for (const PropertySummary& summary : field.strength.summary.properties) {
-    const Property property = property_of(summary.name);
-    if (property != Property::friction)
-      field.others.push_back(
-          {summary.name + "_" + std::string(name_of(property).suffix), shown(field.strength, plan, property)});
-  }
-  if (spread) field.spread = field_spread(problem.model, problem.field.value(), plan);
-  return field;
-}
 
 /// Puts the coefficients of the file in place of drawn ones, and checks their number where the message can name the
 /// file.
@@ -107,114 +61,113 @@ Json extent_of(const std::vector<double>& values) {
 }
 
 Json summary(const FieldOnParticles& field, const RunIdentity& identity) {
-  const auto [lo, hi] = std::minmax_element(field.phi_deg.begin(), field.phi_deg.end());
   const FieldSummary& of = field.strength.summary;
+  Json friction = extent_of(field.columns.front().values);
+  friction["mean"] = degrees(of.mean_phi);
   Json out = {{"particles", field.position.size()},
               {"captured_variance", of.captured_variance},
               {"cov_tan_phi", of.cov},
               {"terms", of.terms},
-              {"friction_angle_deg", {{"mean", degrees(of.mean_phi)}, {"min", *lo}, {"max", *hi}}},
+              {"friction_angle_deg", std::move(friction)},
               {"realization", identity.realization ? Json(*identity.realization) : Json()},
               {"seed", identity.realization ? Json(identity.seed) : Json()},
               {"xi", field.strength.xi}};
-  for (const Column& column : field.others) out[column.name] = extent_of(column.values);
+  for (const Column& column : std::span(field.columns).subspan(1)) out[column.name] = extent_of(column.values);
   return out;
 }
 
-/// What the picture shows: name, unit and figure.
+/// What a picture says of a property: its name, its unit, the colours of its values and of their standard deviation.
 struct Shown {
   const char* name;
   const char* unit;
-  figures::Colour colour;
+  figures::Colour value, stdev;
 };
-constexpr Shown shown_properties[] = {{"Friction angle", "°", figures::Colour::friction_angle},
-                                      {"Cohesion", " kPa", figures::Colour::cohesion},
-                                      {"Unit weight", " kN/m3", figures::Colour::unit_weight},
-                                      {"Viscosity", " Pa s", figures::Colour::viscosity}};
+constexpr Shown shown_properties[] = {
+    {"Friction angle", "°", figures::Colour::friction_angle, figures::Colour::friction_stdev},
+    {"Cohesion", " kPa", figures::Colour::cohesion, figures::Colour::cohesion_stdev},
+    {"Unit weight", " kN/m3", figures::Colour::unit_weight, figures::Colour::unit_weight_stdev},
+    {"Viscosity", " Pa s", figures::Colour::viscosity, figures::Colour::viscosity_stdev}};
+static_assert(std::size(shown_properties) == property_count);
 
-/// Of the property that the options name.
-const std::vector<double>& values_shown(const FieldOnParticles& field, const FieldOptions& options) {
-  const std::string prefix = options.property + "_";
-  const auto column = std::ranges::find_if(field.others, [&](const Column& c) { return c.name.starts_with(prefix); });
-  return column == field.others.end() ? field.phi_deg : column->values;
+const std::vector<double>& values_shown(const FieldOnParticles& field) {
+  const std::string prefix = std::string(name_of(field.shown).key) + "_";
+  return std::ranges::find_if(field.columns, [&](const Column& c) { return c.name.starts_with(prefix); })->values;
 }
 
-std::string subtitle(const FieldOnParticles& on_particles, const FieldOptions& options) {
-  const FieldSummary& field = on_particles.strength.summary;
-  const Shown& what = shown_properties[index_of(property_of(options.property))];
+std::string subtitle(const FieldOnParticles& field, const FieldOptions& options) {
+  const FieldSummary& of = field.strength.summary;
+  const Shown& what = shown_properties[index_of(field.shown)];
   std::string text = std::string(what.name) + ", ";
   text += options.realization       ? "realization " + std::to_string(*options.realization)
           : options.xi_file.empty() ? std::string("median")
                                     : std::string("given coefficients");
-  const bool friction = property_of(options.property) == Property::friction;
-  const double mean =
-      friction ? degrees(field.mean_phi) : extent_of(values_shown(on_particles, options))["mean"].get<double>();
+  const bool friction = field.shown == Property::friction;
+  const double mean = friction ? degrees(of.mean_phi) : extent_of(values_shown(field))["mean"].get<double>();
   text += ": mean " + figures::fixed(mean, 2) + what.unit;
-  if (field.terms > 0)
-    text += "; " + std::to_string(field.terms) + " terms carry " + figures::fixed(100 * field.captured_variance, 1) +
+  if (of.terms > 0)
+    text += "; " + std::to_string(of.terms) + " terms carry " + figures::fixed(100 * of.captured_variance, 1) +
             " % of the variance";
   return text;
 }
 
-/// The measured angles, where they were measured.
-std::vector<figures::Mark> marks_of(const std::optional<FieldSpec>& spec) {
+/// The measured values of the property shown, where they were measured.
+std::vector<figures::Mark> marks_of(const std::optional<FieldSpec>& spec, Property shown) {
   std::vector<figures::Mark> marks;
   if (!spec) return marks;
+  const double unit = shown == Property::friction ? radians(1.0) : name_of(shown).factor;
   for (const FieldDatum& datum : spec->data)
-    marks.push_back({datum.x, figures::fixed(degrees(datum.phi), 1) + "°" +
-                                  (datum.error > 0 ? " ± " + figures::fixed(degrees(datum.error), 1) : "")});
+    if (datum.property == shown)
+      marks.push_back({datum.x, figures::fixed(datum.value / unit, 1) + shown_properties[index_of(shown)].unit +
+                                    (datum.error > 0 ? " ± " + figures::fixed(datum.error / unit, 1) : "")});
   return marks;
 }
 
-/// What the particles show of a realization.
-Frame frame_of(const FieldOnParticles& field, const FieldOptions& options) {
+/// Particles with values of a property in SI units.
+Frame frame_with(const FieldOnParticles& field, std::vector<double> values) {
   Frame frame;
   frame.n_soil = field.position.size();
   frame.position = field.position;
-  frame.tan_phi = field.strength.properties.tan_phi;
-  const Property property = property_of(options.property);
-  if (property == Property::friction) return frame;
-  std::vector<double> values = values_shown(field, options);
-  for (double& value : values) value *= name_of(property).factor;
-  (property == Property::cohesion      ? frame.cohesion
-   : property == Property::unit_weight ? frame.density
-                                       : frame.viscosity) = std::move(values);
+  std::vector<double>* const arrays[] = {&frame.tan_phi, &frame.cohesion, &frame.density, &frame.viscosity};
+  *arrays[index_of(field.shown)] = std::move(values);
   return frame;
+}
+
+/// In SI units, from the columns.
+std::vector<double> values_of(const FieldOnParticles& field) {
+  if (field.shown == Property::friction) return field.strength.properties.tan_phi;
+  std::vector<double> values = values_shown(field);
+  for (double& value : values) value *= name_of(field.shown).factor;
+  return values;
 }
 
 /// The realization alone, or after the median and the standard deviation of all.
 void draw(const FieldOnParticles& field, const Case& problem, const figures::Stamps& stamps,
           const FieldOptions& options) {
-  const Frame frame = frame_of(field, options);
+  const Shown& what = shown_properties[index_of(field.shown)];
+  const Frame frame = frame_with(field, values_of(field));
   const bool realization = options.realization.has_value() || !options.xi_file.empty();
-  Frame median = frame;
+  Frame median;
   std::vector<figures::Snapshot> shots;
   if (field.spread) {
-    median.tan_phi = field.spread->median_tan_phi;
-    median.phi_stdev = field.spread->stdev_phi;
+    median = frame_with(field, field.spread->median);
+    median.stdev = field.spread->stdev;
     const bool given_data = !problem.field->data.empty();
-    shots.push_back({&median, figures::Colour::friction_angle, given_data ? "Median, given the data" : "Median"});
-    shots.push_back({&median, figures::Colour::friction_stdev, "Standard deviation"});
+    shots.push_back({&median, what.value, given_data ? "Median, given the data" : "Median"});
+    shots.push_back({&median, what.stdev, "Standard deviation"});
   }
   if (!field.spread || realization)
-    shots.push_back({&frame, shown_properties[index_of(property_of(options.property))].colour,
-                     field.spread ? "Realization" : "Before the slide"});
+    shots.push_back({&frame, what.value, field.spread ? "Realization" : "Before the slide"});
   figures::plot_profiles(shots, problem.model.terrain, problem.model.dx, options.out, stamps,
-                         {.mark_front = false, .marks = marks_of(problem.field)});
+                         {.mark_front = false, .marks = marks_of(problem.field, field.shown)});
 }
 
 void write(const FieldOnParticles& field, const Case& problem, const figures::Stamps& stamps,
            const FieldOptions& options) {
   const fs::path& path = options.out;
-  std::vector<NamedArray> arrays{{"friction_angle_deg", field.phi_deg}, {"tan_phi", field.strength.properties.tan_phi}};
-  for (const Column& column : field.others) arrays.push_back({column.name, column.values});
-  std::vector<double> median, stdev;
-  if (field.spread) {
-    for (const double tan_phi : field.spread->median_tan_phi) median.push_back(friction_angle_deg(tan_phi));
-    for (const double angle : field.spread->stdev_phi) stdev.push_back(degrees(angle));
-    arrays.push_back({"median_friction_angle_deg", median});
-    arrays.push_back({"stdev_friction_angle_deg", stdev});
-  }
+  std::vector<NamedArray> arrays{{field.columns.front().name, field.columns.front().values},
+                                 {"tan_phi", field.strength.properties.tan_phi}};
+  for (const Column& column : std::span(field.columns).subspan(1)) arrays.push_back({column.name, column.values});
+  for (const Column& column : field.spreads) arrays.push_back({column.name, column.values});
   std::vector<Vec2> published = field.position;
   for (Vec2& x : published) x += problem.model.terrain.origin;
   if (path.extension() == ".csv") return write_field_csv(path, published, arrays);
@@ -230,11 +183,8 @@ Exit field(const FieldOptions& options) {
   const RunIdentity identity{seed ? *seed : random_seed(), options.realization};
   if (options.spread && !problem.field)
     throw ConfigError("/random_field", "is missing: the case has no random field whose spread could be drawn");
-  const FieldOnParticles on_particles = field_on(problem, identity, options.spread);
+  const FieldOnParticles on_particles = field_on(problem, identity, property_of(options.property), options.spread);
   const FieldSummary& of = on_particles.strength.summary;
-  if (property_of(options.property) != Property::friction &&
-      std::ranges::find(of.properties, options.property, &PropertySummary::name) == of.properties.end())
-    throw ConfigError("/random_field", "does not draw " + options.property + ", which --property names");
   std::string source = "Talus " + version;
   if (identity.realization) source += "  ·  seed " + std::to_string(identity.seed);
   source += "  ·  case " + loaded.hash;
@@ -251,7 +201,7 @@ Exit field(const FieldOptions& options) {
                "%zu particles, friction angle %.2f to %.2f deg, mean %.2f; %lld terms carry %.1f %% of the variance\n",
                on_particles.position.size(), phi["min"].get<double>(), phi["max"].get<double>(),
                phi["mean"].get<double>(), static_cast<long long>(of.terms), 100.0 * of.captured_variance);
-  for (const Column& column : on_particles.others) {
+  for (const Column& column : std::span(on_particles.columns).subspan(1)) {
     const Json extent = extent_of(column.values);
     std::fprintf(stderr, "%s %.4g to %.4g, mean %.4g\n", column.name.c_str(), extent["min"].get<double>(),
                  extent["max"].get<double>(), extent["mean"].get<double>());

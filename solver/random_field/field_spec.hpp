@@ -16,11 +16,12 @@ enum class Truncation { largest, diagonal, variance_share };
 enum class RootIntervals { complete, paper };  ///< each mode once | [Z20] Eqs. 15, 21 as printed: modes 1 4 5 8 9 ...
 enum class FieldSampler { karhunen_loeve, circulant_embedding };
 
-/// A measured friction angle.
+/// A measured property.
 struct FieldDatum {
-  Vec2 x;        ///< where [m]
-  double phi;    ///< friction angle [rad], in (0, pi/2)
-  double error;  ///< its standard error [rad], >= 0; 0: exact
+  Vec2 x;                                  ///< where [m]
+  double value;                            ///< friction angle [rad], in (0, pi/2); else as in PropertyValues
+  double error;                            ///< its standard error in the same unit, >= 0; 0: exact
+  Property property = Property::friction;  ///< friction without FieldSpec::properties
   bool operator==(const FieldDatum&) const = default;
 };
 

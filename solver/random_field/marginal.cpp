@@ -86,6 +86,16 @@ double Marginal::value(double z) const {
   return mean;
 }
 
+double Marginal::normal_number(double x) const {
+  if (x == value(-farthest)) return -farthest;
+  return bracketed_root([&](double z) { return value(z) - x; }, -farthest, farthest);
+}
+
+double Marginal::slope(double z) const {
+  constexpr double step = 1e-4;  // its error is of the second order, 1e-8
+  return (value(z + step) - value(z - step)) / (2 * step);
+}
+
 Marginal Marginal::averaged(double share) const {
   if (share == 1.0) return *this;
   const double less = stdev * std::sqrt(share);

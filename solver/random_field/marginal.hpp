@@ -5,6 +5,9 @@
 
 namespace talus {
 
+/// Standard normal numbers beyond this one are never drawn: their probability is 1e-15.
+inline constexpr double farthest = 8.0;
+
 /// A distribution X = F^-1(Phi(Z)), Z standard normal. Made by the functions below, which throw std::domain_error with
 /// the range that is allowed where there is no such distribution. Pure; safe to use from several threads at once.
 struct Marginal {
@@ -19,6 +22,11 @@ struct Marginal {
   double cov() const { return mean != 0.0 ? stdev / mean : 0.0; }
   /// X of a standard normal number, rising.
   double value(double z) const;
+  /// The standard normal number of a value: value(z) = x. @param x  from value(-farthest) to value(farthest)
+  /// @throws std::domain_error otherwise
+  double normal_number(double x) const;
+  /// dX/dz, by central differences.
+  double slope(double z) const;
   /// The same distribution of an average that keeps a share of the variance: the mean, the kind and the bounds stay.
   /// @param share  of the variance [-], in (0, 1]; of ln X for the lognormal distribution
   Marginal averaged(double share) const;

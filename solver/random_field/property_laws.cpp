@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "math/angle.hpp"
 #include "random_field/nataf.hpp"
 #include "support/error.hpp"
 #include "support/text.hpp"
@@ -118,6 +119,25 @@ void PropertyLaws::make_factors(const CorrelationMatrix& wanted, std::span<const
     }
     factors_.push_back(gaussian.lower_factor());
   }
+}
+
+std::string PropertyLaws::unmet(const PropertyDatum& datum) const {
+  const PropertySpec& p = specs_[datum.property];
+  const std::string name(name_of(p.property).key);
+  if (!p.in_space()) return "cannot be met: " + name + " does not vary in space";
+  if (!applies(datum.property, datum.material))
+    return "cannot be met: " + name + " is not random in the material there; properties." + name + ".material is " +
+           in_quotes(p.material);
+  const Marginal& m = marginal(datum.property, datum.material);
+  if (m.stdev == 0.0) return "cannot be met: the standard deviation of " + name + " is 0 there";
+  const double low = m.value(-farthest), high = m.value(farthest);
+  if (datum.value > low && datum.value < high) return "";
+  const auto shown = [&](double value) {
+    if (p.property == Property::friction) return rounded(degrees(std::atan(value))) + " deg";
+    return rounded(value / name_of(p.property).factor) + " " + std::string(name_of(p.property).unit);
+  };
+  return "cannot be met: " + shown(datum.value) + " lies outside the distribution of " + name + ", " + shown(low) +
+         " to " + shown(high) + "; give another distribution, or leave the datum out";
 }
 
 std::string PropertyLaws::listed(const CorrelationMatrix& matrix) const {

@@ -19,6 +19,15 @@ struct FieldMaterial {
   bool used = true;         ///< some soil is made of it
 };
 
+/// A measured value of a random property, in the units of PropertyValues.
+struct PropertyDatum {
+  std::size_t property = 0;  ///< place in FieldSpec::properties
+  std::size_t material = 0;  ///< that it was measured in
+  Vec2 x;                    ///< where [m]
+  double value = 0.0;
+  double error = 0.0;  ///< its standard error, >= 0; 0: exact
+};
+
 /// Where the properties of a case are faulty: "/random_field/properties/cohesion".
 std::string property_pointer(Property p);
 
@@ -36,6 +45,8 @@ class PropertyLaws {
   bool applies(std::size_t k, std::size_t material) const { return applies_[material * size() + k]; }
   /// Distribution of the k-th property; it applies there.
   const Marginal& marginal(std::size_t k, std::size_t material) const { return marginals_[material * size() + k]; }
+  /// Why no realization could meet a datum, for a fault; empty where they can.
+  std::string unmet(const PropertyDatum& datum) const;
   /// Row k of the lower triangle L with Z = L W: correlated standard normal numbers from independent ones.
   std::span<const double> mixing(std::size_t k, std::size_t material) const {
     return std::span(factors_[material]).subspan(k * size(), size());

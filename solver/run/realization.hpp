@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "random_field/random_field.hpp"
+#include "random_field/field_spec.hpp"
+#include "run/field_spread.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/run_result.hpp"
 #include "study/plan.hpp"
@@ -29,26 +29,13 @@ struct Strength {
   FieldSummary summary;
 };
 
-/// The field of a case, conditioned on its data. A datum is taken to the scale of Z by the marginal at its place: z =
-/// (ln tan(phi) - mu) / sigma, and its error by the slope there, d ln tan(phi) / d phi = 2 / sin(2 phi).
-/// @throws ConfigError when the field cannot be built or the data cannot be met
-RandomField make_field(const Model& model, const FieldSpec& spec);
-
-/// ln of the median at points [-], shape of `points`: from the mean where the case gives it, else the field's own, else
-/// the material's; with the trend. Averaging over cells keeps the mean of tan(phi), so that it moves the median up.
-/// @param tan_phi  that of the material at each point [-]
-std::vector<double> log_medians_at(const Model& model, const FieldSpec& spec, const RandomField& field,
-                                   std::span<const Vec2> points, std::span<const double> tan_phi);
-
-/// What the realizations of a field have in common at points: the median of tan(phi) [-], given the data, and the
-/// standard deviation of phi [rad], to first order sigma sqrt(V) sin(2 phi) / 2.
-struct FieldSpread {
-  std::vector<double> median_tan_phi, stdev_phi;
-};
-FieldSpread field_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan);
-
 /// A property of the soil particles in SI units, in the order of the plan: of the particle, or of its material.
 std::vector<double> property_values(const Strength& soil, const ParticlePlan& plan, Property property);
+
+/// Median and standard deviation of a property of the soil particles over the realizations, given the data. The median
+/// is drawn with every coefficient 0; a property that is not random has its value and no deviation.
+/// @throws ConfigError when the field cannot be built
+FieldSpread field_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan, Property property);
 
 /// What is known of a field before anything is drawn: all of the summary but what is of a run.
 /// @throws ConfigError when the field cannot be built

@@ -192,10 +192,11 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   mutations.spoil(other);
   for (const auto& [key, suffix] : {std::pair("friction", "tan_phi"), std::pair("cohesion", "kPa"),
                                     std::pair("unit_weight", "kN_m3"), std::pair("viscosity", "Pa_s")})
-    other["random_field"]["properties"][key] = {{std::string("log_mean_") + suffix, 0.1}, {"log_stdev", 0.1}};
+    other["random_field"]["properties"][key] = {
+        {std::string("log_mean_") + suffix, 0.1}, {"log_stdev", 0.1}, {"data", {{1, 1, 1, 0}}}};
   mutations.spoil(other);
   for (const char* key : {"friction", "cohesion", "unit_weight", "viscosity"})
-    other["random_field"]["properties"][key] = {{"cov", 0.1}};
+    other["random_field"]["properties"][key] = {{"cov", 0.1}, {"data_csv", "case-log.csv"}};
   mutations.spoil(other);
   std::set<std::string> keys;
   collect(test::SchemaCheck("case").document(), "", keys);

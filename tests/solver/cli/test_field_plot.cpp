@@ -86,6 +86,23 @@ TEST(FieldVerb, OtherProperties) {
   EXPECT_EQ(talus({"field", case_file, "--property", "colour", "--out", directory / "b.svg"}).code, 2);
 }
 
+// Median and spread of every random property in tables, of the one that is named in a picture.
+TEST(FieldVerb, SpreadOfAProperty) {
+  const std::string with_log = TALUS_SOURCE_DIR "/schemas/examples/good/case-property-data.json";
+  const test::TemporaryDirectory directory;
+  ASSERT_EQ(talus({"field", with_log, "--spread", "--out", directory / "a.csv"}).code, 0);
+  const std::string text = read_file(directory / "a.csv", std::size_t{1} << 20);
+  EXPECT_TRUE(contains(text,
+                       "x_m,y_m,friction_angle_deg,tan_phi,cohesion_kPa,median_friction_angle_deg,"
+                       "stdev_friction_angle_deg,median_cohesion_kPa,stdev_cohesion_kPa\n"));
+  const std::string file = directory / "a.svg";
+  ASSERT_EQ(talus({"field", with_log, "--spread", "--property", "cohesion", "--realization", "1", "--out", file}).code,
+            0);
+  const std::string picture = read_file(file, std::size_t{16} << 20);
+  for (const char* part : {"Median, given the data", "standard deviation (kPa)", "8.5 kPa ± 1.0", "6.0 kPa ± 0.5"})
+    EXPECT_TRUE(contains(picture, part)) << part;
+}
+
 // ln tan(phi) = mu + sigma Z is linear in xi: the fields of xi and -xi lie symmetrically about mu.
 TEST(FieldVerb, GivenCoefficientsMakeTheField) {
   const test::TemporaryDirectory directory;
