@@ -1,6 +1,7 @@
 // UM-Bridge 1.0 (https://um-bridge-benchmarks.readthedocs.io): the solver as a function for any client of uncertainty
-// quantification. A model is a case in --models; its input is the coefficients of its random field [xi_1..xi_M] and, if
-// config.parameters names some, a second vector of their values; its output is the five measures of the front.
+// quantification. A model is a case in --models; its input is the coefficients of its random field [xi_1..xi_M],
+// of all its random properties in their order, and, if config.parameters names some, a second vector of their values;
+// its output is the five measures of the front.
 //
 // The protocol prescribes the order of the checks: model, feature, inputs. Errors are {"error": {"type", "message"}},
 // with status 400 where the request is wrong; InvalidOutput with 500 where the run failed, and with 503, 504 or 507
@@ -22,11 +23,21 @@ struct Parameter {
   const char* name;
   const char* pointer;
 };
-constexpr Parameter parameters[] = {
-    {"particle_spacing_m", "/particle_spacing_m"},  {"end_s", "/time/end_s"},
-    {"density_kg_m3", "/material/density_kg_m3"},   {"cohesion_Pa", "/material/cohesion_Pa"},
-    {"viscosity_Pa_s", "/material/viscosity_Pa_s"}, {"log_mean", "/random_field/log_mean"},
-    {"log_stdev", "/random_field/log_stdev"}};
+constexpr Parameter parameters[] = {{"particle_spacing_m", "/particle_spacing_m"},
+                                    {"end_s", "/time/end_s"},
+                                    {"density_kg_m3", "/material/density_kg_m3"},
+                                    {"cohesion_Pa", "/material/cohesion_Pa"},
+                                    {"viscosity_Pa_s", "/material/viscosity_Pa_s"},
+                                    {"log_mean", "/random_field/log_mean"},
+                                    {"log_stdev", "/random_field/log_stdev"},
+                                    {"friction_mean_tan_phi", "/random_field/properties/friction/mean_tan_phi"},
+                                    {"friction_cov", "/random_field/properties/friction/cov"},
+                                    {"cohesion_mean_kPa", "/random_field/properties/cohesion/mean_kPa"},
+                                    {"cohesion_cov", "/random_field/properties/cohesion/cov"},
+                                    {"unit_weight_mean_kN_m3", "/random_field/properties/unit_weight/mean_kN_m3"},
+                                    {"unit_weight_cov", "/random_field/properties/unit_weight/cov"},
+                                    {"viscosity_mean_Pa_s", "/random_field/properties/viscosity/mean_Pa_s"},
+                                    {"viscosity_cov", "/random_field/properties/viscosity/cov"}};
 
 struct ProtocolError {
   const char* type;

@@ -62,7 +62,9 @@ void check_steps(const Model& model, Faults& faults) {
 }
 
 void check_modes(const Case& c, Faults& faults) {
-  if (!c.field || c.field->sampler != FieldSampler::karhunen_loeve) return;
+  if (!c.field || (!c.field->properties.empty() && !c.field->in_space()) ||
+      c.field->sampler != FieldSampler::karhunen_loeve)
+    return;
   if (c.field->covariance != Covariance::exponential) return;  // their modes are counted where they are solved
   const Box domain = c.field->domain.value_or(bounding_box(c.model.slide));
   if (c.field->along_x()) check_correlation(c.field->ell_x, domain.width(), "x", faults);

@@ -5,7 +5,6 @@
 #include "case/outline.hpp"
 #include "case/overlay.hpp"
 #include "case/sections.hpp"
-#include "math/angle.hpp"
 #include "particles/geometry.hpp"
 #include "particles/ground.hpp"
 #include "simulation/particle_setup.hpp"
@@ -14,8 +13,6 @@
 
 namespace talus {
 namespace {
-
-constexpr double most_trend_angle = radians(89.0);  ///< as of friction_angle_deg
 
 void check_apart(const Model& model, const SourceLocations& origins, Faults& faults) {
   for (std::size_t a = 0; a < model.slide.size(); ++a)
@@ -160,17 +157,6 @@ void warn_of_unused_keys(const FieldSpec& f, std::vector<Fault>& warnings) {
     warnings.push_back({"/random_field/grid_spacing_m", "is not used: sampler is karhunen_loeve"});
 }
 
-/// Two keys that only the product modes of the separable exponential covariance have.
-void check_covariance(const FieldSpec& f, Faults& faults) {
-  if (f.covariance == Covariance::exponential || f.sampler != FieldSampler::karhunen_loeve) return;
-  if (f.truncation == Truncation::diagonal)
-    faults.add("/random_field/truncation",
-               "\"diagonal\" pairs modes along x with modes along y, which only covariance exponential has; allowed: "
-               "largest, variance_share");
-  if (f.root_intervals == RootIntervals::paper)
-    faults.add("/random_field/root_intervals", "\"paper\" is for covariance exponential; allowed: complete");
-}
-
 }  // namespace
 
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults) {
@@ -197,42 +183,7 @@ void check_choices(const Case& c, Faults& faults) {
       faults.add(material_pointer(c.model, k) + "/softening",
                  "needs rheology.yield \"elastic\": the regularized law shears everywhere and would soften at rest");
   if (!c.field) return;
-  const bool undrained = std::ranges::all_of(c.model.materials, &Material::undrained);
-  if (undrained)
-    faults.add("/random_field", "varies the friction angle, and every material is undrained, which has none");
-  if (!undrained && !c.field->mu && !c.field->mean)
-    for (const Material& m : c.model.materials)
-      if (m.phi <= 0.0 && !m.undrained)
-        faults.add("/random_field",
-                   "needs log_mean or mean_tan_phi: material " + in_quotes(m.name) + " has no friction angle to vary");
-  check_covariance(*c.field, faults);
-  const bool counted =
-      c.field->sampler == FieldSampler::karhunen_loeve && c.field->truncation != Truncation::variance_share &&
-      c.field->covariance == Covariance::exponential && c.field->nugget == 0.0 && c.field->data.empty();
-  if (counted && !c.field->xi.empty() && c.field->xi.size() != static_cast<std::size_t>(c.field->terms))
-    faults.add("/random_field/xi", "has " + std::to_string(c.field->xi.size()) + " coefficients, terms is " +
-                                       std::to_string(c.field->terms));
-}
-
-void check_field(const Case& c, const SourceLocations& origins, Faults& faults) {
-  const FieldSpec& f = *c.field;
-  const Box box = bounding_box(c.model.slide);
-  if (!f.data.empty() && f.sigma == 0.0)
-    faults.add("/random_field/data", "cannot be met: the standard deviation of the field is 0");
-  check_field_data(origins.field_data, f.domain.value_or(box), faults);
-  if (f.trend == 0.0) return;
-  double deepest = greatest_depth(c.model.slide);
-  for (const FieldDatum& datum : f.data) deepest = std::max(deepest, depth_below_surface(c.model.slide, datum.x));
-  for (const Material& m : c.model.materials) {
-    const double phi = f.mean ? std::atan(*f.mean) : f.mu ? std::atan(std::exp(*f.mu)) : m.phi;
-    const double at_depth = phi + f.trend * deepest;
-    if (at_depth > 0.0 && at_depth < most_trend_angle) continue;
-    faults.add("/random_field/trend_deg_per_m",
-               "makes a median friction angle of " + rounded(degrees(at_depth)) + " deg at the depth of " +
-                   rounded(deepest) + " m, from " + rounded(degrees(phi)) +
-                   " deg at the surface; it must stay between 0 and " + rounded(degrees(most_trend_angle)) + " deg");
-    return;
-  }
+  check_field_choices(c, faults);
 }
 
 void warn_of_thin_front(const Model& model, std::vector<Fault>& warnings) {
@@ -247,7 +198,6 @@ void warn_of_thin_front(const Model& model, std::vector<Fault>& warnings) {
 std::vector<Fault> find_warnings(const Case& c) {
   std::vector<Fault> warnings;
   const Model& model = c.model;
-  warn_of_unlikely_values(model, warnings);
   if (!model.terrain.closed) warn_of_overhangs(model.terrain, warnings);
   if (!model.terrain.closed) warn_of_open_ends(model, warnings);
   warn_of_a_slide_in_the_air(model, warnings);

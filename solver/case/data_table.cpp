@@ -8,13 +8,20 @@
 namespace talus {
 namespace {
 
-constexpr std::string_view value_names[] = {"value", "friction", "phi"};
+constexpr std::string_view value_names[] = {"value"};
+/// Words in the heading of a property's column, besides it.
+constexpr std::array<std::array<std::string_view, 2>, property_count> property_words{
+    {{"friction", "phi"}, {"cohesion", "c"}, {"weight", "gamma"}, {"viscosity", "eta"}}};
 constexpr std::string_view error_names[] = {"error", "stdev", "se", "uncertainty"};
 constexpr std::string_view radian_names[] = {"rad", "radian", "radians"};
-constexpr const char* names_allowed =
-    "x, distance, chainage, station or offset; y, z, elevation or height; value, friction or phi; error, stdev, se or "
-    "uncertainty";
 constexpr std::size_t none = static_cast<std::size_t>(-1);
+constexpr std::size_t another = 4;  ///< kind of a column that holds another property, or its error
+
+std::string names_allowed(Property property) {
+  const auto& [name, symbol] = property_words[index_of(property)];
+  return "x, distance, chainage, station or offset; y, z, elevation or height; value, " + std::string(name) + " or " +
+         std::string(symbol) + "; error, stdev, se or uncertainty";
+}
 
 using Cells = std::vector<std::string>;
 
@@ -22,17 +29,27 @@ using Cells = std::vector<std::string>;
 struct Columns {
   std::array<std::size_t, 4> of{none, none, none, none};
   std::array<std::string, 4> names;
+  bool others = false;  ///< there are columns of other properties
 
   bool complete() const { return of[0] != none && of[1] != none && of[2] != none; }
+  bool lacks_only_value() const { return of[0] != none && of[1] != none && of[2] == none; }
   std::size_t needed() const { return std::max({of[0], of[1], of[2]}) + 1; }
 };
 
-/// What a heading stands for: the index in Columns, or none. "error of phi" is an error.
-std::size_t kind_of(const std::string& heading) {
+/// Whether a heading names a property.
+bool names_property(const std::vector<std::string>& words, std::size_t property) {
+  return !first_of(words, property_words[property]).empty();
+}
+
+/// What a heading stands for: the index in Columns, another, or none. "error of phi" is an error.
+std::size_t kind_of(const std::string& heading, Property property) {
   const std::vector<std::string> words = words_of(heading);
   const WordList names[] = {distance_names, elevation_names};
+  const bool own = names_property(words, index_of(property));
+  for (std::size_t p = 0; p < property_count; ++p)
+    if (!own && names_property(words, p)) return another;
   if (!first_of(words, error_names).empty()) return 3;
-  if (!first_of(words, value_names).empty()) return 2;
+  if (own || !first_of(words, value_names).empty()) return 2;
   for (std::size_t k = 0; k < 2; ++k)
     if (contains(names[k], words.front())) return k;
   if (!first_of(words, depth_names).empty()) return 1;  // which is refused
@@ -40,15 +57,16 @@ std::size_t kind_of(const std::string& heading) {
 }
 
 /// Columns by their headings, where the line names a position and a value; a fault where it names one twice.
-Columns named_columns(const Cells& cells, int line, LineFaults& found) {
+Columns named_columns(const Cells& cells, int line, Property property, LineFaults& found) {
   Columns columns;
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    const std::size_t kind = kind_of(cells[k]);
-    if (kind == none) continue;
+    const std::size_t kind = kind_of(cells[k], property);
+    columns.others = columns.others || kind == another;
+    if (kind == none || kind == another) continue;
     if (columns.of[kind] != none) {
       found.add("columns", line,
                 "has two columns of one kind, " + in_quotes(columns.names[kind]) + " and " + in_quotes(cells[k]) +
-                    "; keep one of each (" + names_allowed + ")");
+                    "; keep one of each (" + names_allowed(property) + ")");
       return {};
     }
     columns.of[kind] = k;
@@ -80,9 +98,14 @@ std::string form_of(const Columns& columns, char separator, bool commas) {
 }
 
 /// The columns, from the nearest line of headings above the first row, or in the order x, y, value, error.
-Columns choose_columns(const std::vector<TableLine>& lines, std::size_t first, char separator, LineFaults& found) {
+Columns choose_columns(const std::vector<TableLine>& lines, std::size_t first, char separator, Property property,
+                       LineFaults& found) {
   for (std::size_t k = first; k-- > 0;) {
-    const Columns columns = named_columns(cells_of(lines[k].text, separator), lines[k].number, found);
+    const Columns columns = named_columns(cells_of(lines[k].text, separator), lines[k].number, property, found);
+    if (columns.lacks_only_value() && columns.others) {
+      found.add("columns", lines[k].number, "has no column of this property (" + names_allowed(property) + ")");
+      return {};
+    }
     if (!columns.complete()) continue;
     check_units(columns, lines[k].number, found);
     return columns;
@@ -94,13 +117,13 @@ Columns choose_columns(const std::vector<TableLine>& lines, std::size_t first, c
   else
     found.add("columns", lines[first].number,
               "has " + std::to_string(count) + " columns and no header that names position and value (" +
-                  names_allowed + ")");
+                  names_allowed(property) + ")");
   return columns;
 }
 
 }  // namespace
 
-DataTable read_data_table(std::string_view text, std::size_t most, LineFaults& found) {
+DataTable read_data_table(std::string_view text, std::size_t most, Property property, LineFaults& found) {
   constexpr std::size_t most_headings = 1000;
   const std::vector<TableLine> lines = lines_of(text, most + most_headings);
   const std::optional<char> separator = find_separator(lines, 3);
@@ -112,7 +135,7 @@ DataTable read_data_table(std::string_view text, std::size_t most, LineFaults& f
   }
   std::size_t first = 0;
   while (lines[first].comment || !is_row_of_numbers(cells_of(lines[first].text, *separator), 3)) ++first;
-  const Columns columns = choose_columns(lines, first, *separator, found);
+  const Columns columns = choose_columns(lines, first, *separator, property, found);
   if (!columns.complete()) return {};
   DataTable table;
   bool commas = false;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "case/field_materials.hpp"
 #include "case/overrides.hpp"
 #include "case/sections.hpp"
 #include "particles/geometry.hpp"
@@ -86,9 +87,9 @@ Case read_case(ObjectReader& in, const std::filesystem::path& directory, SourceL
   for (const TargetInput& target : origins.targets) origins.note_file(target.outline);
   in.object(
       "random_field",
-      "Lognormal random field of tan(phi). Give one correlation_length_m, or both of x and y, or scales of fluctuation "
-      "in the same way; log_stdev (and log_mean), or cov_tan_phi (and mean_tan_phi). "
-      "Without this section the friction angle is the material's everywhere.",
+      "Random soil. Give one correlation_length_m, or both of x and y, or scales of fluctuation in the same way; and "
+      "properties, or the short form of a lognormal tan(phi): log_stdev (and log_mean), or cov_tan_phi (and "
+      "mean_tan_phi). Without this section every property is the material's everywhere.",
       Absent::skip, [&](ObjectReader& section) { read_field(section, c.field.emplace(), m.dx, directory, origins); });
   in.object("study", "Monte Carlo over realizations of the random field.", Absent::defaults,
             [&](ObjectReader& section) { read_study(section, c.study); });
@@ -126,9 +127,11 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   if (shaped && free_of_faults({"/terrain", "/slide", "/particle_spacing_m", "/water"}))
     check_water(out.value.model, origins, faults);
   if (free_of_faults({"/walls", "/numerics", "/random_field", "/material", "/slide"})) check_choices(out.value, faults);
-  if (shaped && out.value.field && free_of_faults({"/terrain", "/slide", "/random_field"}))
+  if (shaped && out.value.field && free_of_faults({"/terrain", "/slide", "/material", "/random_field"}))
     check_field(out.value, origins, faults);
   if (faults.empty()) {
+    warn_of_unlikely_values(out.value, out.warnings);
+    if (out.value.field) use_property_means(out.value.model, *out.value.field);
     check_steps(out.value.model, faults);
     check_modes(out.value, faults);
   }
@@ -162,7 +165,7 @@ Plan make_plan(const LoadedCase& loaded, std::uint64_t seed, const std::string& 
   if (c.study.realizations > 1) {
     const char* same = "every realization would be the same: ";
     if (!c.field) throw ConfigError("/random_field", std::string(same) + "a study needs a random field");
-    if (c.field->sigma == 0.0)
+    if (!c.field->random())
       throw ConfigError("/random_field", std::string(same) + "the standard deviation of the field is 0");
     if (!c.field->xi.empty())
       throw ConfigError("/random_field/xi", std::string(same) + "the coefficients are given; remove them to draw");

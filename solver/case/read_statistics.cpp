@@ -49,8 +49,8 @@ Lengths read_lengths(ObjectReader& in, const std::string& key, const std::string
   return found;
 }
 
-/// Faults unless exactly one form of lengths is given, whole.
-void check_lengths(ObjectReader& in) {
+/// Faults unless exactly one form of lengths is given, whole; none is needed where nothing varies in space.
+void check_lengths(ObjectReader& in, bool needed) {
   using Keys = std::vector<std::string>;
   const Keys forms[] = {{"correlation_length_m"},
                         {"correlation_length_x_m", "correlation_length_y_m"},
@@ -60,6 +60,7 @@ void check_lengths(ObjectReader& in) {
   std::vector<Keys> found;
   for (const Keys& form : forms)
     if (std::ranges::any_of(form, given)) found.push_back(form);
+  if (found.empty() && !needed) return;
   if (found.empty()) found.push_back({"correlation_length_m"});
   if (found.size() > 1) {
     const std::string& first = *std::ranges::find_if(found[0], given);
@@ -74,7 +75,8 @@ void check_lengths(ObjectReader& in) {
 void read_correlation(ObjectReader& in, FieldSpec& spec) {
   in.choice(
       "covariance", spec.covariance, covariances,
-      {"Correlation of ln(tan phi), with r^2 = (dx/lx)^2 + (dy/ly)^2 and l the correlation length. exponential: "
+      {"Correlation of the normal field beneath a property, such as ln(tan phi), with r^2 = (dx/lx)^2 + (dy/ly)^2 and "
+       "l the correlation length. exponential: "
        "exp(-|dx|/lx - |dy|/ly); exponential_isotropic: exp(-r); squared_exponential: exp(-r^2); matern_3_2: (1 + "
        "sqrt(3) r) exp(-sqrt(3) r); matern_5_2: (1 + sqrt(5) r + 5 r^2/3) exp(-sqrt(5) r); cosine_exponential: "
        "exp(-|dx|/lx - |dy|/ly) cos(dx/lx) cos(dy/ly).",
@@ -87,11 +89,12 @@ void read_correlation(ObjectReader& in, FieldSpec& spec) {
                    "exponential_isotropic, 1.772 l "
                    "for squared_exponential, 2.309 l for matern_3_2, 2.385 l for matern_5_2, l for cosine_exponential;",
                    "site investigation; Vanmarcke 1983");
-  in.one_form({{{"correlation_length_m"}},
-               {{"correlation_length_x_m", "correlation_length_y_m"}},
-               {{"scale_of_fluctuation_m"}},
-               {{"scale_of_fluctuation_x_m", "scale_of_fluctuation_y_m"}}});
-  check_lengths(in);
+  in.one_form({{{"correlation_length_m"}, {"properties"}},
+               {{"correlation_length_x_m", "correlation_length_y_m"}, {"properties"}},
+               {{"scale_of_fluctuation_m"}, {"properties"}},
+               {{"scale_of_fluctuation_x_m", "scale_of_fluctuation_y_m"}, {"properties"}},
+               {{"properties"}}});
+  check_lengths(in, spec.properties.empty() || spec.in_space());
   const double factor = scale_of_fluctuation_factor(spec.covariance);
   const auto choose = [&](std::optional<double> own_ell, std::optional<double> own_theta, double fallback) {
     if (own_ell || ell.both) return own_ell ? *own_ell : *ell.both;
@@ -114,8 +117,8 @@ void read_correlation(ObjectReader& in, FieldSpec& spec) {
   if (spec.nugget == 0.0) in.remove_record("nugget");
 }
 
-/// Either the mean and standard deviation of ln(tan phi), or the mean and coefficient of variation of tan(phi). Without
-/// a mean the median is that of the material.
+/// Friction in short: either the mean and standard deviation of ln(tan phi), or the mean and coefficient of variation
+/// of tan(phi). Without a mean the median is that of the material. Or properties, which have been read.
 void read_marginal(ObjectReader& in, FieldSpec& spec) {
   std::optional<double> stdev, cov;
   in.optional_number("log_mean", spec.mu, {"", -20.0, 5.0},
@@ -132,14 +135,17 @@ void read_marginal(ObjectReader& in, FieldSpec& spec) {
                      {"Coefficient of variation of tan(phi) itself, of the whole field; truncation and averaging leave "
                       "less, which result.json states.",
                       "laboratory; 0.05 to 0.4 in soils", "none"});
-  in.one_form({{{"log_stdev"}, {"log_mean"}}, {{"cov_tan_phi"}, {"mean_tan_phi"}}});
+  in.one_form({{{"log_stdev"}, {"log_mean"}}, {{"cov_tan_phi"}, {"mean_tan_phi"}}, {{"properties"}, {"correlation"}}});
   const auto given = [&](const char* key) { return in.find(key) != nullptr; };
   const bool log_form = given("log_stdev") || given("log_mean");
   const bool tan_form = given("cov_tan_phi") || given("mean_tan_phi");
-  if (log_form && tan_form) {
+  if (given("properties")) {
+    for (const char* key : {"log_mean", "log_stdev", "mean_tan_phi", "cov_tan_phi"})
+      if (given(key)) in.fault(key, "is given beside properties; state it under properties.friction");
+  } else if (log_form && tan_form) {
     in.fault("", "mixes log_mean, log_stdev with mean_tan_phi, cov_tan_phi; give one pair");
   } else if (!log_form && !tan_form) {
-    in.fault("log_stdev", "is missing (or cov_tan_phi): how much the friction angle varies");
+    in.fault("log_stdev", "is missing (or cov_tan_phi, or properties): how much the friction angle varies");
   } else if (tan_form && !given("cov_tan_phi")) {
     in.fault("cov_tan_phi", "is missing; " + cov_range.describe());
   } else if (log_form && !given("log_stdev")) {
@@ -179,6 +185,7 @@ void read_domain(ObjectReader& in, std::optional<Box>& domain) {
 
 void read_field(ObjectReader& in, FieldSpec& spec, double dx, const std::filesystem::path& directory,
                 SourceLocations& origins) {
+  read_properties(in, spec, directory, origins);
   read_correlation(in, spec);
   read_marginal(in, spec);
   in.choice("direction", spec.direction, field_directions, {"Axes along which the field varies.", "[Z20] Eqs. 11, 23"});
@@ -198,26 +205,36 @@ void read_field(ObjectReader& in, FieldSpec& spec, double dx, const std::filesys
   in.choice("root_intervals", spec.root_intervals, intervals,
             {"complete: every mode once; paper: the printed intervals, which skip every other mode.",
              "[Z20] Eqs. 15, 21 for paper"});
-  spec.cell_average = shortest_length(spec) < spacings_resolved * dx * (1.0 - 1e-9);
+  const bool varies = spec.properties.empty() || spec.in_space();
+  spec.cell_average = varies && shortest_length(spec) < spacings_resolved * dx * (1.0 - 1e-9);
   in.flag("cell_average", spec.cell_average,
           {"Average the field over each particle's cell (variance reduction).", "Vanmarcke 1983",
            "true where a correlation length is under four particle spacings"});
   read_domain(in, spec.domain);
   in.numbers(
       "xi", spec.xi, {"", -40.0, 40.0}, {0, 1'000'000},
-      {"Standard normal coefficients to use instead of drawn ones, one per mode; empty: drawn.", "[Z20] Table 2"});
+      {"Standard normal coefficients to use instead of drawn ones, one per mode; with properties those of friction, "
+       "cohesion, unit_weight and viscosity in this order, one for a property that is drawn once; empty: drawn.",
+       "[Z20] Table 2"});
   in.optional_number("grid_spacing_m", spec.grid_spacing, length,
                      {"Grid of the circulant embedding. It does not depend on the particle spacing, and a realization "
                       "is the same field at every spacing. Particles take the value of the nearest node.",
                       "numerical", "a tenth of the correlation length along each axis"});
-  origins.field_data = read_field_data(in, directory);
+  const FieldData angles = read_field_data(in, directory, measured_angles);
+  if (!angles.values.empty() &&
+      std::ranges::count(origins.field_data.values, Property::friction, &FieldDatum::property))
+    in.fault(in.find("data") != nullptr ? "data" : "data_csv",
+             "is given beside properties.friction.data; give one list");
+  origins.field_data.append(angles);
   spec.data = origins.field_data.values;
-  if (!origins.field_data.form.empty()) origins.files.push_back(origins.field_data.form);
+  std::ranges::copy(origins.field_data.forms, std::back_inserter(origins.files));
   double trend = 0.0;
-  in.number("trend_deg_per_m", trend, {"deg/m", -10.0, 10.0},
-            {"Increase of the median friction angle with every metre below the ground surface before the slide; the "
-             "angle at the surface is that of log_mean or the material (with mean_tan_phi: of the mean).",
-             "laboratory, soundings", "0"});
+  in.number(
+      "trend_deg_per_m", trend, {"deg/m", -10.0, 10.0},
+      {"Increase of the median friction angle with every metre below the ground surface before the slide; the "
+       "angle at the surface is that of log_mean or the material (with mean_tan_phi: of the mean), with properties the "
+       "median of friction, whose coefficient of variation stays.",
+       "laboratory, soundings", "0"});
   spec.trend = radians(trend);
   if (trend == 0.0) in.remove_record("trend_deg_per_m");
 }

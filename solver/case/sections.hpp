@@ -97,6 +97,13 @@ void read_target(ObjectReader& in, const std::filesystem::path& directory, Targe
 /// @param model  terrain, slide, spacing and walls without faults
 void add_targets(Model& model, const SourceLocations& origins, Faults& faults);
 
+// read_properties.cpp
+/// random_field.properties and random_field.correlation.
+/// @param directory  where CSV files lie
+/// @param origins  returns where the data of the properties are written
+void read_properties(ObjectReader& in, FieldSpec& spec, const std::filesystem::path& directory,
+                     SourceLocations& origins);
+
 // read_statistics.cpp
 /// @param dx  particle spacing [m]; the default of cell_average depends on it
 /// @param directory  where CSV files lie
@@ -114,10 +121,16 @@ void use_local_coordinates(Case& c);
 // checks.cpp: whether slide, bed, walls and field fit one another
 /// Slide parts apart from one another, above the bed, between its ends; as many particles as allowed.
 void check_geometry(const Model& model, const SourceLocations& origins, Faults& faults);
-/// Enough wall layers, friction where a field needs it, given coefficients as many as the field takes.
+/// Enough wall layers, and what check_field_choices says.
 void check_choices(const Case& c, Faults& faults);
 
-/// Data in the rectangle of the random field, a median friction angle that the trend keeps in range.
+// check_random_field.cpp
+/// Friction where a field needs it, distributions and correlations that exist, given coefficients as many as it takes.
+/// @param c  with a field
+void check_field_choices(const Case& c, Faults& faults);
+/// Data in the rectangle of the random field that its distributions can meet, a median friction angle that the trend
+/// keeps in range.
+/// @param c  with a field
 void check_field(const Case& c, const SourceLocations& origins, Faults& faults);
 
 // check_water.cpp
@@ -146,6 +159,7 @@ void trim_slide(Model& model, const SourceLocations& origins, std::vector<Fault>
 
 // unlikely_values.cpp
 /// Warnings of values in the allowed range that no soil has, with the unit that was probably meant.
-void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings);
+/// @param c  its materials as they are written
+void warn_of_unlikely_values(const Case& c, std::vector<Fault>& warnings);
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 
 #include "case/sections.hpp"
 #include "math/angle.hpp"
+#include "random_field/property_laws.hpp"
 #include "support/text.hpp"
 
 namespace talus {
@@ -89,8 +90,10 @@ const Usual shear_modulus{"shear_modulus_Pa",
                           "10 kPa to 100 GPa",
                           {{0.0, 1e4, "a modulus in kPa or MPa is multiplied by 1000 or 1e6"}}};
 
+bool is_usual(const Usual& usual, double value) { return value == 0.0 || (value >= usual.lo && value <= usual.hi); }
+
 void warn(const Usual& usual, double value, const std::string& section, std::vector<Fault>& warnings) {
-  if (value == 0.0 || (value >= usual.lo && value <= usual.hi)) return;
+  if (is_usual(usual, value)) return;
   const std::string unit = *usual.unit == '\0' ? "" : std::string(" ") + usual.unit;
   std::string message = to_text(value) + unit + " is unusual for soil (" + usual.range + ")";
   for (const Slip& slip : usual.slips)
@@ -123,7 +126,17 @@ void warn_of_walls(const Boundary& b, std::vector<Fault>& warnings) {
     if (b.stretches[k].c) warn(cohesion, *b.stretches[k].c, section, warnings);
     if (b.stretches[k].xi) warn(turbulence, *b.stretches[k].xi, section, warnings);
   }
-}
+  /// The stated mean of a random property.
+  void warn_of_mean(const PropertySpec& p, std::vector<Fault>& warnings) {
+    if (!p.mean) return;
+    const bool angle = p.property == Property::friction;
+    const Usual* const usual[] = {&friction_angle, &cohesion, &density, &viscosity};
+    const Usual& of = *usual[index_of(p.property)];
+    const double value = angle ? friction_angle_deg(*p.mean) : *p.mean;
+    if (!is_usual(of, value))
+      warnings.push_back({property_pointer(p.property),
+                          "a mean of " + rounded(value) + " " + of.unit + " is unusual for soil (" + of.range + ")"});
+  }
 
 }  // namespace
 
@@ -132,7 +145,8 @@ std::string material_pointer(const Model& model, std::size_t material) {
   return material == 0 ? "/material" : "/slide/outlines/" + std::to_string(part - model.slide.begin()) + "/material";
 }
 
-void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings) {
+void warn_of_unlikely_values(const Case& c, std::vector<Fault>& warnings) {
+  const Model& model = c.model;
   for (std::size_t k = 0; k < model.materials.size(); ++k) {
     const Material& m = model.materials[k];
     const Material& base = model.materials.front();  // a layer that inherits a value is not warned of it again
@@ -151,6 +165,8 @@ void warn_of_unlikely_values(const Model& model, std::vector<Fault>& warnings) {
     }
   }
   for (const Boundary& b : model.boundaries) warn_of_walls(b, warnings);
+  if (c.field)
+    for (const PropertySpec& p : c.field->properties) warn_of_mean(p, warnings);
   if (model.rheology.G) warn(shear_modulus, *model.rheology.G, "/rheology", warnings);
 }
 

@@ -114,6 +114,10 @@ void print_summary(const RunResult& r, const RunOutAxis& axis, std::uint64_t see
         "COV of tan(phi)           %10.3g\n",
         static_cast<long long>(r.field.terms), 100.0 * r.field.captured_variance, degrees(r.field.mean_phi),
         static_cast<unsigned long long>(seed), r.field.cov);
+  for (const PropertySummary& p : r.field.properties)
+    std::printf("%-26s%10.4g %s   in this run; drawn with mean %.4g, COV %.3g\n", p.name.c_str(), p.run_mean,
+                std::string(std::ranges::find(property_names, p.name, &PropertyName::key)->unit).c_str(), p.mean,
+                p.cov);
   std::printf("wall clock                %10.2f s   on %d thread%s\ndigest                    %s\n", r.wall_clock,
               r.threads, r.threads == 1 ? "" : "s", r.digest.c_str());
 }

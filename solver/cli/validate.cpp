@@ -55,10 +55,7 @@ Demand measure(const Case& c) {
   d.steps = std::ceil(c.model.time.end / d.step * (1.0 - 1e-12));
   d.memory = run_memory(static_cast<double>(d.soil + d.wall));
   d.flow = flow_constants(c.model);
-  if (c.field) {
-    const RandomField field = make_field(c.model, *c.field);
-    d.field = field_summary(*c.field, field);
-  }
+  if (c.field) d.field = field_summary(c.model, *c.field, plan);
   if (has_pore_pressure(c.model)) d.water = summary_of(pore_pressure_ratios(c.model, plan.soil));
   d.warnings = warnings_before_run(c, plan, d.field.value_or(FieldSummary{}));
   return d;
@@ -166,6 +163,10 @@ Json numerics_json(const FlowConstants& flow) {
   return {{"sound_speed_m_s", flow.c_s}, {"shear_modulus_Pa", moduli}};
 }
 
+const PropertyName& unit_of(const PropertySummary& p) {
+  return *std::ranges::find(property_names, p.name, &PropertyName::key);
+}
+
 Json to_json(const LoadedCase& loaded, const Demand& d) {
   Json out = {{"valid", true},
               {"title", loaded.value.title},
@@ -187,10 +188,23 @@ Json to_json(const LoadedCase& loaded, const Demand& d) {
   if (d.water)
     out["water"] = {
         {"wet_particles", d.water->wet}, {"liquefied_particles", d.water->liquefied}, {"mean_ratio", d.water->mean}};
+  if (d.field)
+    for (const PropertySummary& p : d.field->properties)
+      out["field"]["properties"][p.name] = {{"mean_" + std::string(unit_of(p).suffix), p.mean}, {"cov", p.cov}};
   if (lacks_rate_dependence(model)) out["rate_dependence_by_soil"] = proposals_json(model);
   out["strength_by_soil"] = strengths_json();
   out["warnings"] = to_json(loaded.warnings);
   return out;
+}
+
+void print_field(const FieldSummary& field) {
+  std::printf("captured variance  %.2f %% with %lld terms", 100.0 * field.captured_variance,
+              static_cast<long long>(field.terms));
+  if (field.properties.empty()) std::printf("; coefficient of variation of tan(phi) %.3g", field.cov);
+  std::printf("\n");
+  for (const PropertySummary& p : field.properties)
+    std::printf("%-18s mean %.4g %s, coefficient of variation %.3g\n", p.name.c_str(), p.mean,
+                unit_of(p).unit.empty() ? "(tangent)" : std::string(unit_of(p).unit).c_str(), p.cov);
 }
 
 void print_end(const char* name, bool wall, Vec2 end, double wall_top) {
@@ -229,9 +243,7 @@ void print_text(const LoadedCase& loaded, const Demand& d) {
               loaded.value.model.time.fixed_step ? " (fixed)" : " at the start");
   std::printf("steps              about %.0f to %.4g s\n", d.steps, loaded.value.model.time.end);
   std::printf("memory             about %.0f MB\n", d.memory / 1e6);
-  if (d.field)
-    std::printf("captured variance  %.2f %% with %lld terms; coefficient of variation of tan(phi) %.3g\n",
-                100.0 * d.field->captured_variance, static_cast<long long>(d.field->terms), d.field->cov);
+  if (d.field) print_field(*d.field);
   if (d.water)
     std::printf(
         "water              %lld of %zu particles, pore pressure over normal stress %.2g on average; %lld without "

@@ -25,13 +25,20 @@ const ColourScale& scale_of(Colour colour) {
       {"friction angle (°)", &viridis, [](const Frame& f, std::size_t i) { return friction_angle_deg(f.tan_phi[i]); }},
       {"displacement (m)", &magma_on_white, [](const Frame& f, std::size_t i) { return norm(f.displacement[i]); }},
       {"pressure (kPa)", &cividis, [](const Frame& f, std::size_t i) { return f.pressure[i] / 1000.0; }},
-      {"standard deviation (°)", &magma_on_white,
-       [](const Frame& f, std::size_t i) { return degrees(f.phi_stdev[i]); }}};
+      {"cohesion (kPa)", &viridis, [](const Frame& f, std::size_t i) { return f.cohesion[i] / 1000.0; }},
+      {"unit weight (kN/m3)", &viridis, [](const Frame& f, std::size_t i) { return f.density[i] * 9.81 / 1000.0; }},
+      {"viscosity (Pa s)", &viridis, [](const Frame& f, std::size_t i) { return f.viscosity[i]; }},
+      {"standard deviation (°)", &magma_on_white, [](const Frame& f, std::size_t i) { return degrees(f.stdev[i]); }},
+      {"standard deviation (kPa)", &magma_on_white, [](const Frame& f, std::size_t i) { return f.stdev[i] / 1000.0; }},
+      {"standard deviation (kN/m3)", &magma_on_white,
+       [](const Frame& f, std::size_t i) { return f.stdev[i] * 9.81 / 1000.0; }},
+      {"standard deviation (Pa s)", &magma_on_white, [](const Frame& f, std::size_t i) { return f.stdev[i]; }}};
   return scales[static_cast<int>(colour)];
 }
 
 ColourRange value_range(std::span<const Frame* const> frames, Colour colour) {
-  ColourRange range{colour == Colour::friction_angle ? 90.0 : 0.0, 0.0};
+  const bool property = colour == Colour::friction_angle || colour >= Colour::cohesion;
+  ColourRange range{property ? 1e300 : 0.0, 0.0};
   for (const Frame* frame : frames) {
     for (std::size_t i = 0; i < frame->n_soil; ++i) {
       const double value = scale_of(colour).value(*frame, i);

@@ -63,7 +63,19 @@ inline constexpr const char* ground = "#E9E3D6";  ///< what lies beneath the bed
 std::string palette_command(const Palette& palette);
 
 /// What the particles are coloured by.
-enum class Colour { speed, friction_angle, displacement, pressure, friction_stdev };
+enum class Colour {
+  speed,
+  friction_angle,
+  displacement,
+  pressure,
+  cohesion,
+  unit_weight,
+  viscosity,
+  friction_stdev,  ///< standard deviations of the properties, in the same order
+  cohesion_stdev,
+  unit_weight_stdev,
+  viscosity_stdev
+};
 
 /// How a quantity is shown.
 struct ColourScale {
@@ -79,7 +91,7 @@ struct ColourRange {
   double hi;
 };
 
-/// Smallest and largest value of the soil of the frames; 0 counts too, except for friction angles.
+/// Smallest and largest value of the soil of the frames; 0 counts too, except for properties of the soil.
 ColourRange value_range(std::span<const Frame* const> frames, Colour colour);
 /// The same widened to round numbers; never empty.
 ColourRange rounded(ColourRange range);

@@ -8,7 +8,7 @@ namespace talus {
 
 double initial_pressure(const FlowConstants& k, const Soil& soil, std::size_t i) {
   using namespace HWY_NAMESPACE;
-  const EquationOfState& eos = k.soils[static_cast<std::size_t>(soil.material[i])].eos;
+  const EquationOfState eos = equation_of_state(k, soil, i);
   const double p = pressure(eos.B, soil.rho[i] / eos.rho0 - 1.0);
   return k.numerics.tension_cutoff ? apply_tension_cutoff(p) : p;
 }

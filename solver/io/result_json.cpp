@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "math/angle.hpp"
+#include "random_field/property_spec.hpp"
 #include "support/error.hpp"
 #include "support/json.hpp"
 
@@ -69,6 +70,7 @@ class ObjectIo {
     else
       member(key) = nullptr;
   }
+  bool writing() const { return !reading_; }
   /// Whether a key is to be transferred that earlier versions did not write.
   bool has(const char* key) const { return !reading_ || node_.contains(key); }
   /// For a key that earlier versions did not write; empty without it.
@@ -205,6 +207,33 @@ void transfer_energy(ObjectIo energy, EnergyBudget& budget) {
   if (energy.has("numerical_share")) energy.optional("numerical_share", numerical_share);
 }
 
+/// "mean_kPa" of the cohesion.
+std::string key_of(const char* stem, const PropertyName& of) {
+  return std::string(stem) + "_" + std::string(of.suffix);
+}
+
+void transfer_property(ObjectIo node, const PropertyName& of, PropertySummary& property) {
+  property.name = of.key;
+  node.number(key_of("mean", of).c_str(), property.mean, 0.0);
+  node.number("cov", property.cov, 0.0);
+  node.number(key_of("run_mean", of).c_str(), property.run_mean, 0.0);
+  node.number("run_cov", property.run_cov, 0.0);
+}
+
+/// Written where the case states properties.
+void transfer_properties(ObjectIo node, std::vector<PropertySummary>& properties) {
+  std::vector<PropertySummary> all;
+  for (const PropertyName& of : property_names) {
+    const std::string key(of.key);
+    const auto known = std::ranges::find(properties, key, &PropertySummary::name);
+    if (node.writing() ? known == properties.end() : !node.has(key.c_str())) continue;
+    PropertySummary& property = all.emplace_back();
+    if (node.writing()) property = *known;
+    transfer_property(node.object(key.c_str()), of, property);
+  }
+  properties = std::move(all);
+}
+
 void transfer_measures(ObjectIo& root, RunResult& result) {
   for (const Measure* measure : reading_order()) {
     double& value = result.measures.*measure->member;
@@ -269,6 +298,8 @@ void transfer_all(ObjectIo root, RunResult& result, Provenance& from) {
   field.number("mean_friction_angle_deg", mean_phi_deg, 0.0);
   field.integer("terms", result.field.terms);
   result.field.mean_phi = radians(mean_phi_deg);
+  if (root.writing() ? !result.field.properties.empty() : field.has("properties"))
+    transfer_properties(field.object("properties"), result.field.properties);
   if (root.has("energy")) transfer_energy(root.object("energy"), result.energy);
 
   ObjectIo provenance = root.object("provenance");

@@ -20,7 +20,11 @@ namespace fs = std::filesystem;
 void check_lengths(const Frame& f) {
   const std::size_t n = f.position.size();
   const auto all_equal = [n](const auto&... array) { return ((array.size() == n) && ...); };
-  if (n == 0 || f.n_soil > n || !std::apply(all_equal, vtkhdf::arrays_of(f)))
+  const auto fits = [&](const vtkhdf::OptionalField& optional) {
+    return (f.*optional.array).empty() || (f.*optional.array).size() == n;
+  };
+  if (n == 0 || f.n_soil > n || !std::apply(all_equal, vtkhdf::arrays_of(f)) ||
+      !std::ranges::all_of(vtkhdf::optional_fields, fits))
     throw std::invalid_argument("snapshot: the frame is empty or its arrays differ in length");
 }
 
@@ -34,6 +38,7 @@ class Reserve {
     if (!file_) throw_io_error("write", path_, errno);
     std::size_t numbers_per_row = 3;  // points of double precision take six
     for (const vtkhdf::Field& f : vtkhdf::fields) numbers_per_row += static_cast<std::size_t>(f.components);
+    numbers_per_row += vtkhdf::optional_fields.size();
     const std::size_t rows = particles + 2 * std::min(particles, vtkhdf::max_chunk);  // a chunk that grows may move
     constexpr std::size_t metadata = 128 * 1024;
     const auto bytes = static_cast<off_t>(rows * numbers_per_row * sizeof(float) + metadata);
@@ -140,8 +145,9 @@ void SnapshotWriter::close() {
 }
 
 void SnapshotWriter::write_sidecar() const {
-  write_file_atomically(fs::path(path_).replace_extension(".xdmf"),
-                        vtkhdf::xdmf_document(path_.filename().string(), particles_, times_, far_));
+  write_file_atomically(
+      fs::path(path_).replace_extension(".xdmf"),
+      vtkhdf::xdmf_document(path_.filename().string(), particles_, times_, far_, vtkhdf::fields_of(file_)));
 }
 
 std::vector<double> snapshot_times(const fs::path& path) { return times_of(open_snapshots(path)); }
@@ -165,7 +171,10 @@ Frame read_frame(const fs::path& path, std::size_t index) {
   }
   frame.n_soil = static_cast<std::size_t>(std::count(walls.begin(), walls.end(), 0));
   std::apply([n](auto&... array) { (array.resize(n), ...); }, vtkhdf::arrays_of(frame));
-  for (const vtkhdf::Field& f : vtkhdf::fields) {
+  const std::vector<vtkhdf::Field> arrays = vtkhdf::fields_of(file);
+  for (const vtkhdf::OptionalField& optional : vtkhdf::optional_fields)
+    if (std::ranges::count(arrays, optional.field.name(), &vtkhdf::Field::name) > 0) (frame.*optional.array).resize(n);
+  for (const vtkhdf::Field& f : arrays) {
     const auto components = static_cast<std::size_t>(f.components);
     const std::vector<float> values = hdf5::read_rows<float>(file, f.path, index * n, n);
     if (values.size() != n * components)

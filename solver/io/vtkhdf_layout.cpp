@@ -18,7 +18,8 @@ constexpr std::size_t steps_per_chunk = 64;
 
 /// The integer lists with one number a step, and the numbers of the step whose particles begin at row `offset`. There
 /// is one grid with one topology, so that the offsets of its parts and cells stay 0. The group talus is not VTK's.
-std::vector<std::pair<std::string, std::int64_t>> step_numbers(std::int64_t offset, std::int64_t step) {
+std::vector<std::pair<std::string, std::int64_t>> step_numbers(std::span<const Field> arrays, std::int64_t offset,
+                                                               std::int64_t step) {
   std::vector<std::pair<std::string, std::int64_t>> all = {{"talus/step", step},
                                                            {"VTKHDF/Steps/NumberOfParts", 1},
                                                            {"VTKHDF/Steps/PartOffsets", 0},
@@ -26,7 +27,7 @@ std::vector<std::pair<std::string, std::int64_t>> step_numbers(std::int64_t offs
                                                            {"VTKHDF/Steps/ConnectivityIdOffsets", 0},
                                                            {"VTKHDF/Steps/PointOffsets", offset}};
   const std::string group = "VTKHDF/Steps/PointDataOffsets/";
-  for (const Field& f : std::span(fields).subspan(1)) all.emplace_back(group + f.name(), offset);
+  for (const Field& f : arrays.subspan(1)) all.emplace_back(group + f.name(), offset);
   for (const char* name : constant_fields) all.emplace_back(group + name, 0);
   return all;
 }
@@ -71,7 +72,24 @@ void append_far_points(hid_t root, const Frame& frame) {
   hdf5::append_rows<double>(root, points.path, xyz);
 }
 
+bool is_points(const Field& f) { return std::string_view(f.path) == points.path; }
+
 }  // namespace
+
+std::vector<Field> fields_of(const Frame& frame) {
+  std::vector<Field> all(fields.begin(), fields.end());
+  for (const OptionalField& optional : optional_fields)
+    if (!(frame.*optional.array).empty()) all.push_back(optional.field);
+  return all;
+}
+
+std::vector<Field> fields_of(hid_t root) {
+  std::vector<Field> all(fields.begin(), fields.end());
+  const hdf5::Id data = hdf5::open_group(root, "VTKHDF/PointData");
+  for (const OptionalField& optional : optional_fields)
+    if (hdf5::has(data, optional.field.name())) all.push_back(optional.field);
+  return all;
+}
 
 void write_grid(hid_t root, std::size_t n, std::array<std::int64_t, 2> version) {
   const hdf5::Id grid = hdf5::create_group(root, "VTKHDF");
@@ -100,8 +118,9 @@ void create_skeleton(hid_t root, const Frame& first) {
   }
   for (const char* group : {"VTKHDF/PointData", "VTKHDF/Steps", "VTKHDF/Steps/PointDataOffsets", "talus"})
     hdf5::create_group(root, group);
-  for (const Field& f : fields)
-    hdf5::create_rows(root, f.path, far && &f == &points ? hdf5::type<double>() : hdf5::type<float>(),
+  const std::vector<Field> arrays = fields_of(first);
+  for (const Field& f : arrays)
+    hdf5::create_rows(root, f.path, far && is_points(f) ? hdf5::type<double>() : hdf5::type<float>(),
                       static_cast<std::size_t>(f.components), std::min(n, max_chunk), Filter::compressed);
   std::vector<std::int32_t> numbers(n);
   std::iota(numbers.begin(), numbers.end(), 0);
@@ -110,15 +129,16 @@ void create_skeleton(hid_t root, const Frame& first) {
   hdf5::write_array<std::int32_t>(root, "VTKHDF/PointData/is_wall", numbers, Filter::compressed);
   hdf5::write_attribute<std::int64_t>(hdf5::open_group(root, "VTKHDF/Steps"), "NSteps", 0);
   hdf5::create_rows(root, step_times, hdf5::type<double>(), 1, steps_per_chunk);
-  for (const auto& [path, number] : step_numbers(0, 0))
+  for (const auto& [path, number] : step_numbers(arrays, 0, 0))
     hdf5::create_rows(root, path, hdf5::type<std::int64_t>(), 1, steps_per_chunk);
 }
 
 void append_step(hid_t root, const Frame& frame, std::size_t step) {
   const std::size_t n = frame.position.size();
   std::vector<float> buffer;
-  for (const Field& f : fields) {
-    if (&f == &points && frame.origin != Vec2{}) {
+  const std::vector<Field> arrays = fields_of(frame);
+  for (const Field& f : arrays) {
+    if (is_points(f) && frame.origin != Vec2{}) {
       append_far_points(root, frame);
       continue;
     }
@@ -127,7 +147,7 @@ void append_step(hid_t root, const Frame& frame, std::size_t step) {
     for (std::size_t i = 0; i < n; ++i) f.get(frame, i, &buffer[i * components]);
     hdf5::append_rows<float>(root, f.path, buffer);
   }
-  for (const auto& [path, number] : step_numbers(static_cast<std::int64_t>(step * n), frame.step))
+  for (const auto& [path, number] : step_numbers(arrays, static_cast<std::int64_t>(step * n), frame.step))
     hdf5::append_rows<std::int64_t>(root, path, {{number}});
   hdf5::append_rows<double>(root, step_times, {{frame.time}});
 }
@@ -137,12 +157,14 @@ void commit(hid_t root, std::size_t steps) {
 }
 
 void truncate_steps(hid_t root, std::size_t steps, std::size_t n) {
-  for (const Field& f : fields) hdf5::truncate_rows(root, f.path, steps * n);
-  for (const auto& [path, number] : step_numbers(0, 0)) hdf5::truncate_rows(root, path, steps);
+  const std::vector<Field> arrays = fields_of(root);
+  for (const Field& f : arrays) hdf5::truncate_rows(root, f.path, steps * n);
+  for (const auto& [path, number] : step_numbers(arrays, 0, 0)) hdf5::truncate_rows(root, path, steps);
   hdf5::truncate_rows(root, step_times, steps);
 }
 
-std::string xdmf_document(const std::string& file, std::size_t n, std::span<const double> times, bool far) {
+std::string xdmf_document(const std::string& file, std::size_t n, std::span<const double> times, bool far,
+                          std::span<const Field> arrays) {
   const std::size_t rows = n * times.size();
   std::string text =
       "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\"><Domain><Grid Name=\"snapshots\" GridType=\"Collection\" "
@@ -150,12 +172,12 @@ std::string xdmf_document(const std::string& file, std::size_t n, std::span<cons
   for (std::size_t k = 0; k < times.size(); ++k) {
     const auto whole = [&](const Field& f) {
       return item(file, {"/" + std::string(f.path), "Float", rows, f.components, k * n, n, 0, f.components,
-                         far && &f == &points ? 8 : 4});
+                         far && is_points(f) ? 8 : 4});
     };
     text += "<Grid Name=\"step" + std::to_string(k) + "\" GridType=\"Uniform\"><Time Value=\"" + to_text(times[k]) +
             "\"/><Topology TopologyType=\"Polyvertex\" NumberOfElements=\"" + std::to_string(n) +
             "\" NodesPerElement=\"1\"/>\n" + "<Geometry GeometryType=\"XYZ\">" + whole(points) + "</Geometry>\n";
-    for (const Field& f : std::span(fields).subspan(1))
+    for (const Field& f : arrays.subspan(1))
       if (f.components <= 3) text += attribute(f.name(), f.components == 3, whole(f));
     const std::string point_data = "/VTKHDF/PointData/";
     const char* const components[] = {"stress_xx", "stress_yy", "stress_zz", "stress_xy"};

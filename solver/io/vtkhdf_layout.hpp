@@ -47,7 +47,7 @@ constexpr Field scalar_field(const char* path) {
           [](Frame& f, std::size_t i, const float* from) { (f.*member)[i] = *from; }};
 }
 
-inline constexpr std::array<Field, 9> fields = {{
+inline constexpr std::array<Field, 8> fields = {{
     vector_field<&Frame::position>("VTKHDF/Points"),
     vector_field<&Frame::velocity>("VTKHDF/PointData/velocity"),
     vector_field<&Frame::displacement>("VTKHDF/PointData/displacement"),
@@ -56,7 +56,6 @@ inline constexpr std::array<Field, 9> fields = {{
     {"VTKHDF/PointData/friction_angle_deg", 1,
      [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>(friction_angle_deg(f.tan_phi[i])); },
      [](Frame& f, std::size_t i, const float* from) { f.tan_phi[i] = std::tan(radians(*from)); }},
-    scalar_field<&Frame::cohesion>("VTKHDF/PointData/cohesion"),
     scalar_field<&Frame::shear_rate>("VTKHDF/PointData/shear_rate"),
     // VTK's order of a symmetric tensor: XX YY ZZ XY YZ XZ.
     {"VTKHDF/PointData/stress", 6,
@@ -71,11 +70,24 @@ inline constexpr std::array<Field, 9> fields = {{
 
 inline constexpr const Field& points = fields[0];
 
+/// Arrays that a file has where its first frame has them: properties that vary within a material.
+struct OptionalField {
+  Field field;
+  std::vector<double> Frame::*array;
+};
+inline constexpr std::array<OptionalField, 2> optional_fields = {
+    {{scalar_field<&Frame::cohesion>("VTKHDF/PointData/cohesion_Pa"), &Frame::cohesion},
+     {scalar_field<&Frame::viscosity>("VTKHDF/PointData/viscosity_Pa_s"), &Frame::viscosity}}};
+
+/// The arrays that change with time, of a frame or of a file: all of `fields`, then those of optional_fields that are
+/// there.
+std::vector<Field> fields_of(const Frame& frame);
+std::vector<Field> fields_of(hid_t root);
+
 /// The arrays of a frame, all of one length.
 template <class F>
 auto arrays_of(F& f) {
-  return std::tie(f.position, f.displacement, f.velocity, f.density, f.pressure, f.tan_phi, f.cohesion, f.shear_rate,
-                  f.stress);
+  return std::tie(f.position, f.displacement, f.velocity, f.density, f.pressure, f.tan_phi, f.shear_rate, f.stress);
 }
 
 /// Arrays that never change, stored once in VTKHDF/PointData: 1 for walls; the particle's number.
@@ -105,6 +117,8 @@ void truncate_steps(hid_t root, std::size_t steps, std::size_t n);
 /// @param particles  points at each step
 /// @param times      of the steps [s]
 /// @param far        the points are of double precision
-std::string xdmf_document(const std::string& file, std::size_t particles, std::span<const double> times, bool far);
+/// @param arrays     of the file
+std::string xdmf_document(const std::string& file, std::size_t particles, std::span<const double> times, bool far,
+                          std::span<const Field> arrays = fields);
 
 }  // namespace talus::vtkhdf

@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// Soil particles; every array has size() entries and all are permuted together.
+/// Soil particles; every array has size() entries, or none where its comment says so, and all are permuted together.
 /// The first n_active take part in the flow; the rest left through an open end and keep their last state.
 struct Soil {
   std::vector<double> x, y;           ///< position [m]
@@ -19,6 +19,8 @@ struct Soil {
   std::vector<double> m;              ///< mass [kg/m]
   std::vector<double> tan_phi;        ///< tangent of the friction angle [-]
   std::vector<double> c;              ///< cohesion [Pa]
+  std::vector<double> rho0;           ///< reference density [kg/m3]; empty: that of each material
+  std::vector<double> eta;            ///< viscosity once it has yielded [Pa s]; empty: that of each material
   // What evaluations in double precision write; empty where the vectorised loops run, which keep their own.
   std::vector<double> ax, ay;             ///< acceleration of the last evaluation [m/s2]
   std::vector<double> drho;               ///< rate of density [kg/m3/s]
@@ -52,6 +54,8 @@ void for_each_state(S& s, F&& f) {
   f("m", s.m);
   f("tan_phi", s.tan_phi);
   f("c", s.c);
+  if (!s.rho0.empty()) f("rho0", s.rho0);
+  if (!s.eta.empty()) f("eta", s.eta);
 }
 /// Rates of the last evaluation: the leapfrog predicts with them.
 template <class S, class F>

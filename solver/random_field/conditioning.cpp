@@ -20,7 +20,22 @@ void merge(GaussianDatum& into, const GaussianDatum& datum) {
     return;
   }
   const double a = 1 / (into.error * into.error), b = 1 / (datum.error * datum.error);
-  into = {into.x, (a * into.z + b * datum.z) / (a + b), 1 / std::sqrt(a + b)};
+  into.z = (a * into.z + b * datum.z) / (a + b);
+  into.error = 1 / std::sqrt(a + b);
+}
+
+/// N with N N^T = S. Without a nugget S is diagonal, and may have zeros there.
+Eigen::MatrixXd noise_factor(const std::vector<GaussianDatum>& data, const Eigen::MatrixXd& common, double nugget) {
+  const auto n = static_cast<Eigen::Index>(data.size());
+  Eigen::MatrixXd s = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const GaussianDatum& datum = data[static_cast<std::size_t>(i)];
+    s(i, i) = nugget > 0 ? datum.error * datum.error + nugget : datum.error;
+    for (Eigen::Index j = 0; j < i; ++j)
+      if (nugget > 0 && norm(data[static_cast<std::size_t>(j)].x - datum.x) < same_point)
+        s(i, j) = s(j, i) = nugget * common(i, j);
+  }
+  return nugget > 0 ? Eigen::MatrixXd(s.llt().matrixL()) : s;
 }
 
 [[noreturn]] void refuse(const std::vector<Vec2>& points, std::size_t k) {
@@ -38,8 +53,8 @@ void merge(GaussianDatum& into, const GaussianDatum& datum) {
 std::vector<GaussianDatum> merged(std::span<const GaussianDatum> data) {
   std::vector<GaussianDatum> out;
   for (const GaussianDatum& datum : data) {
-    const auto known =
-        std::ranges::find_if(out, [&](const GaussianDatum& d) { return norm(d.x - datum.x) < same_point; });
+    const auto known = std::ranges::find_if(
+        out, [&](const GaussianDatum& d) { return d.weights == datum.weights && norm(d.x - datum.x) < same_point; });
     if (known == out.end())
       out.push_back(datum);
     else
@@ -51,27 +66,31 @@ std::vector<GaussianDatum> merged(std::span<const GaussianDatum> data) {
 Conditioning::Conditioning(const Correlation& correlation, double nugget, std::vector<GaussianDatum> data)
     : correlation_(correlation), continuous_(1 - nugget) {
   const auto n = static_cast<Eigen::Index>(data.size());
+  const auto fields = data.empty() ? 0 : static_cast<Eigen::Index>(data.front().weights.size());
   z_.resize(n);
-  noise_.resize(n);
+  weights_.resize(n, fields);
   for (Eigen::Index i = 0; i < n; ++i) {
     const GaussianDatum& datum = data[static_cast<std::size_t>(i)];
     points_.push_back(datum.x);
     z_[i] = datum.z;
-    noise_[i] = std::sqrt(datum.error * datum.error + nugget);
+    weights_.row(i) = Eigen::Map<const Eigen::RowVectorXd>(datum.weights.data(), fields);
   }
-  Eigen::MatrixXd k = data_covariance();
-  k.diagonal() += noise_.cwiseAbs2();
+  noise_ = noise_factor(data, common(), nugget);
+  Eigen::MatrixXd k = common();
+  for (Eigen::Index j = 0; j < n; ++j) k.col(j).array() *= covariances(points_[static_cast<std::size_t>(j)], 0).array();
+  k += noise_ * noise_.transpose();
   factor_.compute(k);
   const Eigen::VectorXd remainder = Eigen::MatrixXd(factor_.matrixL()).diagonal();
   for (Eigen::Index i = 0; i < n; ++i)
     if (!(remainder[i] * remainder[i] > least_remainder)) refuse(points_, static_cast<std::size_t>(i));
 }
 
-Eigen::MatrixXd Conditioning::data_covariance() const {
-  const auto n = static_cast<Eigen::Index>(size());
-  Eigen::MatrixXd k(n, n);
-  for (Eigen::Index j = 0; j < n; ++j) k.col(j) = covariances(points_[static_cast<std::size_t>(j)], 0.0);
-  return k;
+Eigen::VectorXd Conditioning::common(std::span<const double> weights) const {
+  return weights_ * Eigen::Map<const Eigen::VectorXd>(weights.data(), weights_.cols());
+}
+
+Eigen::VectorXd Conditioning::of_field(const Eigen::VectorXd& a, std::size_t field) const {
+  return weights_.col(static_cast<Eigen::Index>(field)).cwiseProduct(a);
 }
 
 Eigen::VectorXd Conditioning::covariances(Vec2 x, double cell) const {
@@ -82,12 +101,9 @@ Eigen::VectorXd Conditioning::covariances(Vec2 x, double cell) const {
 }
 
 Eigen::VectorXd Conditioning::coefficients(std::span<const double> y, std::span<const double> eta) const {
-  Eigen::VectorXd residual = z_;
-  for (std::size_t i = 0; i < size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    residual[k] += noise_[k] * eta[i] - y[i];
-  }
-  return factor_.solve(residual);
+  const auto n = static_cast<Eigen::Index>(size());
+  const Eigen::Map<const Eigen::VectorXd> drawn(y.data(), n), normal(eta.data(), n);
+  return factor_.solve(z_ + noise_ * normal - drawn);
 }
 
 double Conditioning::correction(Vec2 x, double cell, const Eigen::VectorXd& a) const {
@@ -97,10 +113,10 @@ double Conditioning::correction(Vec2 x, double cell, const Eigen::VectorXd& a) c
   return sum;
 }
 
-double Conditioning::variance(Vec2 x, double cell, double v, const Eigen::VectorXd& c,
+double Conditioning::variance(const Eigen::VectorXd& k, double v, const Eigen::VectorXd& c,
                               const Eigen::MatrixXd& v_data) const {
-  const Eigen::VectorXd w = factor_.solve(covariances(x, cell));
-  return v - 2 * w.dot(c) + w.dot(v_data * w) + w.cwiseAbs2().dot(noise_.cwiseAbs2());
+  const Eigen::VectorXd l = factor_.solve(k);
+  return v - 2 * l.dot(c) + l.dot(v_data * l) + (noise_.transpose() * l).squaredNorm();
 }
 
 }  // namespace talus

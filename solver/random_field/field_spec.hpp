@@ -1,11 +1,13 @@
 #pragma once
-// What random field of the friction angle a study asks for.
+// What random field of the soil a study asks for.
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
 #include "math/vec2.hpp"
 #include "random_field/covariance.hpp"
+#include "random_field/property_spec.hpp"
 
 namespace talus {
 
@@ -14,17 +16,18 @@ enum class Truncation { largest, diagonal, variance_share };
 enum class RootIntervals { complete, paper };  ///< each mode once | [Z20] Eqs. 15, 21 as printed: modes 1 4 5 8 9 ...
 enum class FieldSampler { karhunen_loeve, circulant_embedding };
 
-/// A measured friction angle.
+/// A measured property.
 struct FieldDatum {
-  Vec2 x;        ///< where [m]
-  double phi;    ///< friction angle [rad], in (0, pi/2)
-  double error;  ///< its standard error [rad], >= 0; 0: exact
+  Vec2 x;                                  ///< where [m]
+  double value;                            ///< friction angle [rad], in (0, pi/2); else as in PropertyValues
+  double error;                            ///< its standard error in the same unit, >= 0; 0: exact
+  Property property = Property::friction;  ///< friction without FieldSpec::properties
   bool operator==(const FieldDatum&) const = default;
 };
 
-/// ln(tan phi) = mu + sigma Z(x), Z a standard Gaussian field; with the default covariance, exp(-|dx|/ell_x -
-/// |dy|/ell_y), that of [Z20] Eqs. 11-23. With a dip, x and y in what follows are the axes along and across the
-/// bedding.
+/// Without `properties`: ln(tan phi) = mu + sigma Z(x), Z a standard Gaussian field; with the default covariance,
+/// exp(-|dx|/ell_x - |dy|/ell_y), that of [Z20] Eqs. 11-23. With a dip, x and y in what follows are the axes along and
+/// across the bedding.
 struct FieldSpec {
   FieldDirection direction = FieldDirection::xy;
   double ell_x = 1.0;               ///< correlation length along x [m], > 0; what it means: covariance.hpp
@@ -46,6 +49,17 @@ struct FieldSpec {
   double nugget = 0.0;                ///< share of the variance that is white noise of the particles [-], in [0, 1)
   std::vector<FieldDatum> data = {};  ///< measured values that every realization meets within their errors
   double trend = 0.0;  ///< increase of the friction angle of the median with the depth below the surface [rad/m]
+  std::vector<PropertySpec> properties = {};  ///< in the order of Property; empty: friction by mu, mean and sigma
+  std::vector<PropertyCorrelation> correlation = {};  ///< of pairs of them; those that are not listed have none
+
+  /// Whether something is drawn that varies from point to point.
+  bool in_space() const {
+    return properties.empty() ? sigma != 0.0 : std::ranges::any_of(properties, &PropertySpec::in_space);
+  }
+  /// Whether one realization differs from another.
+  bool random() const {
+    return properties.empty() ? sigma != 0.0 : std::ranges::any_of(properties, &PropertySpec::random);
+  }
   bool along_x() const { return direction != FieldDirection::y; }  ///< whether the field varies along x
   bool along_y() const { return direction != FieldDirection::x; }
   bool operator==(const FieldSpec&) const = default;

@@ -60,7 +60,11 @@ void RandomField::check_given(std::size_t needed) const {
 void RandomField::condition(std::span<const GaussianDatum> data) {
   if (data.empty()) return;
   std::vector<GaussianDatum> turned = merged(data);
-  for (GaussianDatum& datum : turned) datum.x = bedding_.turned(datum.x);
+  data_points_.clear();
+  for (GaussianDatum& datum : turned) {
+    data_points_.push_back(datum.x);
+    datum.x = bedding_.turned(datum.x);
+  }
   conditioning_.emplace(correlation_, nugget_, std::move(turned));
   check_given(terms());
 }
@@ -80,42 +84,69 @@ std::vector<double> RandomField::variance(std::span<const Vec2> points) const {
 std::vector<double> RandomField::averaging_loss(std::span<const Vec2> points) const {
   std::vector<double> loss(points.size(), 0.0);
   if (!at_points_) return loss;
-  const std::vector<Vec2> turned = bedding_.turned(points);
-  const auto variance_of = [&](const Sampler& sampler) {
-    return std::visit([&](const auto& s) { return s.variance(turned); }, sampler);
-  };
-  const std::vector<double> averaged = variance_of(sampler_), at = variance_of(*at_points_);
-  for (std::size_t i = 0; i < loss.size(); ++i) loss[i] = (1 - nugget_) * (at[i] - averaged[i]);
+  const std::vector<double> averaged = sampled_variance(points, Support::cell);
+  const std::vector<double> at = sampled_variance(points, Support::point);
+  for (std::size_t i = 0; i < loss.size(); ++i) loss[i] = at[i] - averaged[i];
   return loss;
+}
+
+double RandomField::averaging() const {
+  const auto variance_of = [](const Sampler& sampler) {
+    return std::visit([](const auto& s) { return s.variance(); }, sampler);
+  };
+  return at_points_ ? std::min(1.0, variance_of(sampler_) / variance_of(*at_points_)) : 1.0;
+}
+
+std::vector<double> RandomField::sampled(std::span<const Vec2> points, std::span<const double> xi,
+                                         Support support) const {
+  const std::vector<Vec2> turned = bedding_.turned(points);
+  const auto draw = [&](const auto& s) { return s.gaussian(turned, xi.first(s.terms())); };
+  std::vector<double> y = std::visit(draw, sampler(support));
+  if (nugget_ > 0)
+    for (double& value : y) value *= std::sqrt(1 - nugget_);
+  return y;
+}
+
+std::vector<double> RandomField::sampled_variance(std::span<const Vec2> points, Support support) const {
+  const std::vector<Vec2> turned = bedding_.turned(points);
+  std::vector<double> v = std::visit([&](const auto& s) { return s.variance(turned); }, sampler(support));
+  for (double& value : v) value *= 1 - nugget_;
+  return v;
+}
+
+Eigen::MatrixXd RandomField::sampled_covariances(std::span<const Vec2> points, std::span<const Vec2> places,
+                                                 Support support) const {
+  const std::vector<Vec2> turned = bedding_.turned(points);
+  const auto count = static_cast<Eigen::Index>(points.size());
+  Eigen::MatrixXd c(static_cast<Eigen::Index>(places.size()), count);
+  const auto fill = [&]<class S>(const S& of_support) {
+    for (Eigen::Index i = 0; i < c.rows(); ++i) {
+      const Vec2 place = bedding_.turned(places[static_cast<std::size_t>(i)]);
+      if constexpr (requires { of_support.modes_at(Vec2{}); }) {  // what is drawn has the covariances of the modes kept
+        const std::vector<double> at = std::get<S>(sampler(Support::point)).modes_at(place);
+        const std::vector<double> row = of_support.gaussian(turned, at);
+        c.row(i) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), count);
+      } else {
+        const double cell = support == Support::cell ? cell_ : 0.0;
+        for (Eigen::Index k = 0; k < count; ++k)
+          c(i, k) = correlation_.with_cell(turned[static_cast<std::size_t>(k)] - place, cell);
+      }
+    }
+  };
+  std::visit(fill, sampler(support));
+  return (1 - nugget_) * c;
 }
 
 std::vector<double> RandomField::conditional_variance(std::span<const Vec2> points) const {
   std::vector<double> v = variance(points);
   if (!conditioning_) return v;
-  const std::vector<Vec2> turned = bedding_.turned(points);
-  const auto n = static_cast<Eigen::Index>(data());
-  const auto count = static_cast<Eigen::Index>(points.size());
-  Eigen::MatrixXd of_data = conditioning_->data_covariance(), with_data(n, count);
-  const auto expansion = [&]<class S>(const S& sampler) {
-    if constexpr (requires { sampler.modes_at(Vec2{}); }) {  // what is drawn has the covariances of the modes kept
-      Eigen::MatrixXd modes(static_cast<Eigen::Index>(sampler.terms()), n);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const std::vector<double> at =
-            std::get<S>(at_points()).modes_at(conditioning_->points()[static_cast<std::size_t>(i)]);
-        modes.col(i) = Eigen::Map<const Eigen::VectorXd>(at.data(), static_cast<Eigen::Index>(at.size()));
-        const std::vector<double> covariance = sampler.gaussian(turned, at);
-        with_data.row(i) = (1 - nugget_) * Eigen::Map<const Eigen::RowVectorXd>(covariance.data(), count);
-      }
-      of_data = (1 - nugget_) * modes.transpose() * modes;
-    } else {
-      for (Eigen::Index k = 0; k < count; ++k)
-        with_data.col(k) = conditioning_->covariances(turned[static_cast<std::size_t>(k)], cell_);
-    }
-  };
-  std::visit(expansion, sampler_);
-  for (std::size_t k = 0; k < v.size(); ++k)
-    v[k] = nugget_ + std::max(0.0, conditioning_->variance(turned[k], cell_, v[k] - nugget_,
+  const Eigen::MatrixXd of_data = sampled_covariances(data_points_, data_points_, Support::point);
+  const Eigen::MatrixXd with_data = sampled_covariances(points, data_points_, Support::cell);
+  for (std::size_t k = 0; k < v.size(); ++k) {
+    const Eigen::VectorXd kriging = conditioning_->covariances(bedding_.turned(points[k]), cell_);
+    v[k] = nugget_ + std::max(0.0, conditioning_->variance(kriging, v[k] - nugget_,
                                                            with_data.col(static_cast<Eigen::Index>(k)), of_data));
+  }
   return v;
 }
 
@@ -135,22 +166,13 @@ std::vector<double> RandomField::draw_stratified(std::uint64_t seed, std::uint64
   return xi;
 }
 
-std::vector<double> RandomField::continuous(const Sampler& sampler, std::span<const Vec2> turned,
-                                            std::span<const double> xi) const {
-  std::vector<double> y = std::visit([&](const auto& s) { return s.gaussian(turned, xi.first(s.terms())); }, sampler);
-  if (nugget_ > 0)
-    for (double& value : y) value *= std::sqrt(1 - nugget_);
-  return y;
-}
-
 std::vector<double> RandomField::gaussian(std::span<const Vec2> points, std::span<const double> xi) const {
   if (xi.size() != terms()) throw std::invalid_argument("RandomField::gaussian: xi does not have terms() entries");
-  const std::vector<Vec2> turned = bedding_.turned(points);
-  std::vector<double> z = continuous(sampler_, turned, xi);
+  std::vector<double> z = sampled(points, xi, Support::cell);
   if (conditioning_) {
-    const std::vector<double> y = continuous(at_points(), conditioning_->points(), xi);
+    const std::vector<double> y = sampled(data_points_, xi, Support::point);
     const Eigen::VectorXd a = conditioning_->coefficients(y, xi.subspan(modes(), data()));
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] += conditioning_->correction(turned[i], cell_, a);
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] += conditioning_->correction(bedding_.turned(points[i]), cell_, a);
   }
   if (nugget_ > 0)
     for (std::size_t i = 0; i < z.size(); ++i) z[i] += std::sqrt(nugget_) * white_noise(xi.back(), points[i]);

@@ -19,6 +19,10 @@
 
 namespace talus {
 
+/// What a value of the field stands for: the mean over a particle's cell (the point, where the field is not averaged),
+/// or the point itself.
+enum class Support { cell, point };
+
 /// A standard Gaussian field Z(x) prepared for sampling: modes solved (truncated expansions) or spectrum known
 /// (circulant embedding); conditioned on data where there are any.
 ///
@@ -77,6 +81,22 @@ class RandomField {
   /// analytic continuation; with circulant embedding the value at the grid's nearest node.
   std::vector<double> gaussian(std::span<const Vec2> points, std::span<const double> xi) const;
 
+  // The parts of Z, for those who put it together from several fields: Y alone, without data and noise.
+
+  /// Y at points [-], shape of `points`. @param xi  modes() coefficients or more, of which the first ones are used
+  std::vector<double> sampled(std::span<const Vec2> points, std::span<const double> xi, Support support) const;
+  /// Its variance at points [-], shape of `points`.
+  std::vector<double> sampled_variance(std::span<const Vec2> points, Support support) const;
+  /// Its covariances as they are drawn, [place][point]: of the values at `points` with those at the places, which are
+  /// points.
+  Eigen::MatrixXd sampled_covariances(std::span<const Vec2> points, std::span<const Vec2> places,
+                                      Support support) const;
+  /// Share of the variance of Y that averaging over cells leaves [-].
+  double averaging() const;
+  const Correlation& correlation() const { return correlation_; }
+  const Bedding& bedding() const { return bedding_; }
+  double cell() const { return cell_; }  ///< side of the cells that values are averaged over [m]; 0: values at points
+
  private:
   using Sampler = std::variant<KarhunenLoeve, CirculantEmbedding, PlanarEmbedding, GridExpansion>;
 
@@ -86,10 +106,9 @@ class RandomField {
     return std::visit([](const auto& s) { return s.captured_variance(); }, sampler_);
   }
   double with_nugget(double v) const { return (1 - nugget_) * v + nugget_; }
-  const Sampler& at_points() const { return at_points_ ? *at_points_ : sampler_; }
-  /// Y without data, at points in the axes of the bedding.
-  std::vector<double> continuous(const Sampler& sampler, std::span<const Vec2> turned,
-                                 std::span<const double> xi) const;
+  const Sampler& sampler(Support support) const {
+    return support == Support::point && at_points_ ? *at_points_ : sampler_;
+  }
 
   Correlation correlation_;
   Bedding bedding_;
@@ -98,6 +117,7 @@ class RandomField {
   Sampler sampler_;
   std::optional<Sampler> at_points_;  ///< the same without averaging; unset without averaging
   std::optional<Conditioning> conditioning_;
+  std::vector<Vec2> data_points_;  ///< where the data are [m]
   FieldSpec spec_;
   Box domain_;  ///< in the axes of the bedding [m]
 };

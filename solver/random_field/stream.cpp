@@ -33,11 +33,12 @@ double normal(const std::array<double, 2>& uniform) {
 std::uint64_t micrometres(double x) { return static_cast<std::uint64_t>(std::llround(x * 1e6)); }
 
 /// Place of `realization` in a random permutation of 0 .. realizations-1 (Fisher & Yates), one permutation per mode.
-std::uint64_t stratum(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization, std::uint32_t mode) {
+std::uint64_t stratum(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization, std::uint32_t mode,
+                      std::uint32_t field) {
   std::vector<std::uint64_t> strata(realizations);
   std::iota(strata.begin(), strata.end(), std::uint64_t{0});
   for (std::uint64_t n = realizations - 1; n > 0; --n) {
-    const double u = uniforms(seed, n, mode, Stream::strata)[0];
+    const double u = uniforms(seed, n, mode, stream_of(Stream::strata, field))[0];
     std::swap(strata[n], strata[static_cast<std::uint64_t>(u * static_cast<double>(n + 1))]);
   }
   return strata[realization];
@@ -52,8 +53,8 @@ std::array<double, 2> uniforms(std::uint64_t seed, std::uint64_t index, std::uin
   return {unit(words[0], words[1]), unit(words[2], words[3])};
 }
 
-double standard_normal(std::uint64_t seed, std::uint64_t realization, std::uint32_t mode) {
-  return normal(uniforms(seed, realization, mode, Stream::field));
+double standard_normal(std::uint64_t seed, std::uint64_t realization, std::uint32_t mode, std::uint32_t field) {
+  return normal(uniforms(seed, realization, mode, stream_of(Stream::field, field)));
 }
 
 double white_noise(double key, Vec2 x) {
@@ -62,14 +63,14 @@ double white_noise(double key, Vec2 x) {
 }
 
 std::vector<double> stratified_normals(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization,
-                                       std::size_t modes) {
+                                       std::size_t modes, std::uint32_t field) {
   if (realization >= realizations) throw std::invalid_argument("stratified_normals: no such realization");
   const boost::math::normal_distribution<double> normal;
   std::vector<double> xi(modes);
   for (std::size_t k = 0; k < modes; ++k) {
     const auto mode = static_cast<std::uint32_t>(k);
-    const double place = static_cast<double>(stratum(seed, realizations, realization, mode));
-    const double jitter = uniforms(seed, realization, mode, Stream::jitter)[0];
+    const double place = static_cast<double>(stratum(seed, realizations, realization, mode, field));
+    const double jitter = uniforms(seed, realization, mode, stream_of(Stream::jitter, field))[0];
     const double p = (place + jitter) / static_cast<double>(realizations);
     xi[k] = quantile(normal, std::min(p, std::nextafter(1.0, 0.0)));
   }

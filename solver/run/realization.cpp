@@ -2,15 +2,17 @@
 
 #include <cmath>
 #include <cstdint>
-#include <span>
 
-#include "random_field/random_field.hpp"
+#include "run/friction_field.hpp"
+#include "run/property_draw.hpp"
 #include "support/error.hpp"
 
 namespace talus {
 namespace {
 
-std::vector<double> draw(const RandomField& field, const FieldSpec& spec, const StudySpec& study,
+/// @param field  RandomField or PropertyFields
+template <class Field>
+std::vector<double> draw(const Field& field, const FieldSpec& spec, const StudySpec& study,
                          const RunIdentity& identity) {
   if (!identity.realization) return spec.xi.empty() ? std::vector<double>(field.terms(), 0.0) : spec.xi;
   const auto index = static_cast<std::uint64_t>(*identity.realization);
@@ -23,85 +25,64 @@ std::vector<double> draw(const RandomField& field, const FieldSpec& spec, const 
                                static_cast<std::size_t>(study.stratified_modes));
 }
 
-/// The data of a case on the scale of Z.
-std::vector<GaussianDatum> gaussian_data(const Model& model, const FieldSpec& spec, const RandomField& field) {
-  std::vector<Vec2> points;
-  std::vector<double> tan_phi;
-  for (const FieldDatum& datum : spec.data) {
-    points.push_back(datum.x);
-    tan_phi.push_back(std::tan(model.materials[static_cast<std::size_t>(material_at(model.slide, datum.x))].phi));
-  }
-  const std::vector<double> mu = log_medians_at(model, spec, field, points, tan_phi);
-  std::vector<GaussianDatum> data;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const FieldDatum& datum = spec.data[i];
-    data.push_back({points[i], (std::log(std::tan(datum.phi)) - mu[i]) / spec.sigma,
-                    datum.error * 2 / std::sin(2 * datum.phi) / std::abs(spec.sigma)});
-  }
-  return data;
-}
-
-}  // namespace
-
-RandomField make_field(const Model& model, const FieldSpec& spec) {
-  RandomField field(spec, bounding_box(model.slide), model.dx);
-  if (!spec.data.empty()) field.condition(gaussian_data(model, spec, field));
-  return field;
-}
-
-std::vector<double> log_medians_at(const Model& model, const FieldSpec& spec, const RandomField& field,
-                                   std::span<const Vec2> points, std::span<const double> tan_phi) {
-  std::vector<double> mu;
-  if (spec.mean) {
-    mu = log_medians(*spec.mean, spec.sigma, field.variance(points));
-  } else {
-    for (const double median : tan_phi) mu.push_back(spec.mu.value_or(std::log(median)));
-    if (spec.cell_average) {
-      const std::vector<double> loss = field.averaging_loss(points);
-      for (std::size_t i = 0; i < mu.size(); ++i) mu[i] += spec.sigma * spec.sigma * loss[i] / 2;
-    }
-  }
-  if (spec.trend == 0.0) return mu;
-  for (std::size_t i = 0; i < mu.size(); ++i) {
-    const double at_surface = spec.mean ? *spec.mean : spec.mu ? std::exp(*spec.mu) : tan_phi[i];
-    mu[i] += log_trend(at_surface, spec.trend, depth_below_surface(model.slide, points[i]));
-  }
-  return mu;
-}
-
-FieldSpread field_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan) {
-  std::vector<Vec2> points;
-  for (const SoilPoint& point : plan.soil) points.push_back(point.x);
-  const RandomField field = make_field(model, spec);
-  const std::vector<double> mu = log_medians_at(model, spec, field, points, material_properties(model, plan).tan_phi);
-  FieldSpread spread{lognormal(field.gaussian(points, std::vector<double>(field.terms(), 0.0)), mu, spec.sigma), {}};
-  const std::vector<double> variance = field.conditional_variance(points);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    spread.stdev_phi.push_back(std::abs(spec.sigma) * std::sqrt(variance[i]) *
-                               std::sin(2 * std::atan(spread.median_tan_phi[i])) / 2);
-  return spread;
-}
-
-FieldSummary field_summary(const FieldSpec& spec, const RandomField& field) {
+/// All of the summary but what is of a run, in the short form.
+FieldSummary summary_of(const FieldSpec& spec, const RandomField& field) {
   return {.captured_variance = field.captured_variance(),
           .cov = coefficient_of_variation(spec.sigma, field.variance()),
           .terms = static_cast<std::int64_t>(field.terms()),
           .embedding_error = field.embedding_error()};
 }
 
+/// The short form: a lognormal field of tan(phi).
+void draw_friction(const FieldSpec& spec, const StudySpec& study, const ParticlePlan& plan, const RunIdentity& identity,
+                   Strength& result) {
+  std::vector<double>& tan_phi = result.properties.tan_phi;
+  std::vector<Vec2> points;
+  for (const SoilPoint& point : plan.soil) points.push_back(point.x);
+  const RandomField random = make_field(result.model, spec);
+  result.xi = draw(random, spec, study, identity);
+  const std::vector<double> mu = log_medians_at(result.model, spec, random, points, tan_phi);
+  tan_phi = lognormal(random.gaussian(points, result.xi), mu, spec.sigma);
+  result.summary = summary_of(spec, random);
+}
+
+}  // namespace
+
+std::vector<double> property_values(const Strength& soil, const ParticlePlan& plan, Property property) {
+  const SoilProperties& by_particle = soil.properties;
+  const std::vector<double>* const arrays[] = {&by_particle.tan_phi, &by_particle.c, &by_particle.rho0,
+                                               &by_particle.eta};
+  const std::vector<double>& array = *arrays[index_of(property)];
+  if (!array.empty()) return array;
+  std::vector<double> values;
+  for (const SoilPoint& point : plan.soil) {
+    const Material& m = soil.model.materials[static_cast<std::size_t>(point.material)];
+    values.push_back(property == Property::unit_weight ? m.rho0 : m.eta);
+  }
+  return values;
+}
+
+FieldSummary field_summary(const Model& model, const FieldSpec& spec, const ParticlePlan& plan) {
+  if (!spec.properties.empty()) return summary_of(property_fields(model, spec), model, plan);
+  return summary_of(spec, make_field(model, spec));
+}
+
+FieldSpread field_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan, Property property) {
+  if (spec.properties.empty()) return friction_spread(model, spec, plan);
+  return property_spread(property_fields(model, spec), model, plan, property);
+}
+
 Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study,
                   const ParticlePlan& plan, const RunIdentity& identity) {
-  Strength result{.properties = material_properties(model, plan), .xi = {}, .summary = {}};
-  std::vector<double>& tan_phi = result.properties.tan_phi;
-  if (field) {
-    std::vector<Vec2> points;
-    for (const SoilPoint& point : plan.soil) points.push_back(point.x);
-    const RandomField random = make_field(model, *field);
-    result.xi = draw(random, *field, study, identity);
-    const std::vector<double> mu = log_medians_at(model, *field, random, points, tan_phi);
-    tan_phi = lognormal(random.gaussian(points, result.xi), mu, field->sigma);
-    result.summary = field_summary(*field, random);
+  Strength result{.properties = material_properties(model, plan), .model = model, .xi = {}, .summary = {}};
+  if (field && !field->properties.empty()) {
+    const PropertyFields fields = property_fields(model, *field);
+    result.xi = draw(fields, *field, study, identity);
+    result.summary = draw_properties(fields, plan, result.xi, result.properties, result.model);
+  } else if (field) {
+    draw_friction(*field, study, plan, identity, result);
   }
+  std::vector<double>& tan_phi = result.properties.tan_phi;
   double sum = 0.0;
   for (double& value : tan_phi) {
     value *= 1.0 + identity.perturbation;

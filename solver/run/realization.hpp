@@ -1,12 +1,12 @@
 #pragma once
-// One realization: from its identity to the friction angle of every soil particle.
+// One realization: from its identity to the properties of every soil particle.
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "random_field/random_field.hpp"
+#include "random_field/field_spec.hpp"
+#include "run/field_spread.hpp"
 #include "simulation/particle_setup.hpp"
 #include "simulation/run_result.hpp"
 #include "study/plan.hpp"
@@ -21,38 +21,31 @@ struct RunIdentity {
   bool operator==(const RunIdentity&) const = default;
 };
 
-/// The strength of every soil particle.
+/// The soil of a realization.
 struct Strength {
   SoilProperties properties;  ///< of the soil particles, in the order of the plan
+  Model model;                ///< the case's, its materials with what is drawn once for a whole material
   std::vector<double> xi;     ///< coefficients used; empty without a random field
   FieldSummary summary;
 };
 
-/// The field of a case, conditioned on its data. A datum is taken to the scale of Z by the marginal at its place: z =
-/// (ln tan(phi) - mu) / sigma, and its error by the slope there, d ln tan(phi) / d phi = 2 / sin(2 phi).
-/// @throws ConfigError when the field cannot be built or the data cannot be met
-RandomField make_field(const Model& model, const FieldSpec& spec);
+/// A property of the soil particles in SI units, in the order of the plan: of the particle, or of its material.
+std::vector<double> property_values(const Strength& soil, const ParticlePlan& plan, Property property);
 
-/// ln of the median at points [-], shape of `points`: from the mean where the case gives it, else the field's own, else
-/// the material's; with the trend. Averaging over cells keeps the mean of tan(phi), so that it moves the median up.
-/// @param tan_phi  that of the material at each point [-]
-std::vector<double> log_medians_at(const Model& model, const FieldSpec& spec, const RandomField& field,
-                                   std::span<const Vec2> points, std::span<const double> tan_phi);
+/// Median and standard deviation of a property of the soil particles over the realizations, given the data. The median
+/// is drawn with every coefficient 0; a property that is not random has its value and no deviation.
+/// @throws ConfigError when the field cannot be built
+FieldSpread field_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan, Property property);
 
-/// What the realizations of a field have in common at points: the median of tan(phi) [-], given the data, and the
-/// standard deviation of phi [rad], to first order sigma sqrt(V) sin(2 phi) / 2.
-struct FieldSpread {
-  std::vector<double> median_tan_phi, stdev_phi;
-};
-FieldSpread field_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan);
+/// What is known of a field before anything is drawn: all of the summary but what is of a run.
+/// @throws ConfigError when the field cannot be built
+FieldSummary field_summary(const Model& model, const FieldSpec& spec, const ParticlePlan& plan);
 
-/// What is known of a field before anything is drawn: all of the summary but the mean friction angle.
-FieldSummary field_summary(const FieldSpec& spec, const RandomField& field);
-
-/// tan(phi) = exp(mu + sigma Z(x)) (1 + perturbation) where the case has a random field, tan(phi) of the material
-/// otherwise. [Z20] Eq. 12. Where the case gives the mean of tan(phi), mu at each particle is such that tan(phi) has
-/// this mean there (log_medians); the median run then has the median at each particle. With Latin hypercube sampling
-/// the draws depend on StudySpec::realizations, as they must.
+/// In the short form of the field tan(phi) = exp(mu + sigma Z(x)) (1 + perturbation), [Z20] Eq. 12; tan(phi) of the
+/// material without a field. Where the case gives the mean of tan(phi), mu at each particle is such that tan(phi) has
+/// this mean there (log_medians); the median run then has the median at each particle. With FieldSpec::properties each
+/// of them as PropertyFields draws it; `perturbation` changes tan(phi) too. With Latin hypercube sampling the draws
+/// depend on StudySpec::realizations, as they must.
 /// @throws ConfigError when the field cannot be built or the realization lies outside a Latin hypercube study
 Strength strength(const Model& model, const std::optional<FieldSpec>& field, const StudySpec& study,
                   const ParticlePlan& plan, const RunIdentity& identity);

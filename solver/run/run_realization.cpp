@@ -90,7 +90,7 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
   }
   std::ranges::move(warnings_before_run(problem, plan, soil.summary), std::back_inserter(loaded.warnings));
   hooks.warn(loaded.warnings);
-  Simulation simulation(problem.model, plan, soil.properties);
+  Simulation simulation(soil.model, plan, soil.properties);
   if (resumed) {
     const CheckpointState state = read_checkpoint(checkpoint_file, header);
     simulation.restore(state);

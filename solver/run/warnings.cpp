@@ -39,7 +39,7 @@ void warn_of_liquefied_soil(const Model& model, const ParticlePlan& plan, std::v
 }  // namespace
 
 std::optional<double> shortest_correlation(const std::optional<FieldSpec>& field) {
-  if (!field || field->cell_average || field->sigma == 0.0) return std::nullopt;
+  if (!field || field->cell_average || !field->in_space()) return std::nullopt;
   if (!field->along_y()) return field->ell_x;
   return field->along_x() ? std::min(field->ell_x, field->ell_y) : field->ell_y;
 }
@@ -56,12 +56,14 @@ std::vector<Fault> warnings_before_run(const Case& c, const ParticlePlan& plan, 
     warnings.push_back({pointer_of(reason.check), reason.message});
   std::ranges::move(dissipation_warnings(c.model), std::back_inserter(warnings));
   warn_of_liquefied_soil(c.model, plan, warnings);
-  if (c.field && field.captured_variance < little_variance) {
-    char text[200];
-    std::snprintf(
-        text, sizeof text,
-        "captures %.2g %% of the variance with %lld terms: most of the stated variability never enters the runs",
-        100.0 * field.captured_variance, static_cast<long long>(field.terms));
+  if (c.field && c.field->in_space() && field.captured_variance < little_variance) {
+    const bool scaled = !c.field->properties.empty();
+    char text[300];
+    std::snprintf(text, sizeof text, "captures %.2g %% of the variance with %lld terms: %s",
+                  100.0 * field.captured_variance, static_cast<long long>(field.terms),
+                  scaled ? "the values have the stated distribution, but vary over longer distances than the "
+                           "correlation length; take more terms, or circulant_embedding"
+                         : "most of the stated variability never enters the runs");
     warnings.push_back({"/random_field", text});
   }
   if (field.embedding_error > inexact) {
@@ -75,12 +77,8 @@ std::vector<Fault> warnings_before_run(const Case& c, const ParticlePlan& plan, 
 }
 
 std::vector<Fault> warnings_before_run(const Case& c) {
-  FieldSummary summary;
-  if (c.field) {
-    const RandomField field = make_field(c.model, *c.field);
-    summary = field_summary(*c.field, field);
-  }
-  return warnings_before_run(c, plan_particles(c.model), summary);
+  const ParticlePlan plan = plan_particles(c.model);
+  return warnings_before_run(c, plan, c.field ? field_summary(c.model, *c.field, plan) : FieldSummary{});
 }
 
 }  // namespace talus

@@ -19,7 +19,7 @@ const ConstitutiveParameters& parameters(const FlowConstants& k, const Soil& soi
 
 /// Elastic energy of the volume of one particle [J/m]; none in tension where the pressure is cut off.
 double compression_of(const FlowConstants& k, const Soil& soil, std::size_t i) {
-  const EquationOfState& eos = parameters(k, soil, i).eos;
+  const EquationOfState eos = equation_of_state(k, soil, i);
   const bool cut = k.numerics.tension_cutoff && soil.rho[i] < eos.rho0;
   return cut ? 0.0 : soil.m[i] * eos.energy(soil.rho[i]);
 }
@@ -29,7 +29,7 @@ double distortion_of(const FlowConstants& k, const Soil& soil, std::size_t i) {
   using namespace HWY_NAMESPACE;
   const ConstitutiveParameters& of = parameters(k, soil, i);
   const Deviator<double> t{soil.txx[i], soil.tyy[i], soil.txy[i]};
-  const double V = soil.m[i] / pair_density(soil.rho[i], least_density(of.eos.rho0));
+  const double V = soil.m[i] / pair_density(soil.rho[i], least_density(reference_density(k, soil, i)));
   return V * double_dot(t) / (4.0 * of.G);
 }
 

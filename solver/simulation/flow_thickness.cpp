@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <map>
 
+#include "simulation/observables.hpp"
+
 namespace talus {
 namespace {
 
@@ -21,7 +23,7 @@ void FlowThickness::observe(const Soil& soil, std::span<const Material> material
   std::map<std::int64_t, Column> columns;
   for (std::size_t i = 0; i < soil.n_active; ++i) {
     Column& column = columns[static_cast<std::int64_t>(std::floor(soil.x[i] / width))];
-    column.area += soil.m[i] / materials[static_cast<std::size_t>(soil.material[i])].rho0;
+    column.area += reference_area(soil, materials, i);
     column.momentum += soil.m[i] * norm(soil.velocity(i));
   }
   for (const auto& [place, column] : columns) {

@@ -85,8 +85,7 @@ std::vector<SoilParcel> parcels_of(std::span<const std::uint32_t> particles, con
   std::vector<SoilParcel> parcels;
   for (const std::uint32_t i : particles)
     if (i < soil.n_active)
-      parcels.push_back({.run_out = axis.distance(soil.x[i]),
-                         .area = soil.m[i] / materials[static_cast<std::size_t>(soil.material[i])].rho0});
+      parcels.push_back({.run_out = axis.distance(soil.x[i]), .area = reference_area(soil, materials, i)});
   std::ranges::stable_sort(parcels, {}, &SoilParcel::run_out);
   return parcels;
 }

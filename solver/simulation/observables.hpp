@@ -11,6 +11,11 @@
 
 namespace talus {
 
+/// Area of a soil particle at its reference density [m2].
+inline double reference_area(const Soil& soil, std::span<const Material> materials, std::size_t i) {
+  return soil.m[i] / (soil.rho0.empty() ? materials[static_cast<std::size_t>(soil.material[i])].rho0 : soil.rho0[i]);
+}
+
 /// Fronts and centre of mass as run-outs. The front at fixed thickness is that of the largest body, without soil that
 /// left the terrain: the farthest place where it is terrain.front_thickness thick (simulation/thickness.hpp).
 /// @param soil       not empty

@@ -23,7 +23,7 @@ Frame Simulation::frame() const {
   f.n_soil = soil_.size();
   const std::size_t n = soil_.size() + walls_.size();
   for (auto* array : {&f.position, &f.displacement, &f.velocity}) array->resize(n);
-  for (auto* array : {&f.density, &f.pressure, &f.tan_phi, &f.cohesion, &f.shear_rate}) array->resize(n);
+  for (auto* array : {&f.density, &f.pressure, &f.tan_phi, &f.shear_rate}) array->resize(n);
   f.stress.resize(n);
   Soil evaluated;
   flow_->read_evaluation(soil_, evaluated);
@@ -35,10 +35,10 @@ Frame Simulation::frame() const {
     f.density[k] = soil_.rho[i];
     f.pressure[k] = evaluated.p[i];
     f.tan_phi[k] = soil_.tan_phi[i];
-    f.cohesion[k] = soil_.c[i];
     f.shear_rate[k] = evaluated.gamma_dot[i];
     f.stress[k] = stress_components(evaluated.stress(i), evaluated.p[i]);
   }
+  add_varying_properties(f);
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const std::size_t k = soil_.size() + w;
     f.position[k] = walls_.position(w);
@@ -47,6 +47,24 @@ Frame Simulation::frame() const {
     f.stress[k] = stress_components(walls_.stress(w), walls_.p[w]);
   }
   return f;
+}
+
+/// Cohesion and viscosity where they differ from the materials', or will: softening soil has its own from the start.
+void Simulation::add_varying_properties(Frame& f) const {
+  const std::size_t n = f.position.size();
+  const auto of_material = [&](std::size_t i) {
+    return model_.materials[static_cast<std::size_t>(soil_.material[i])].c == soil_.c[i];
+  };
+  bool cohesion_varies =
+      std::ranges::any_of(model_.materials, [](const Material& m) { return m.softening.has_value(); });
+  for (std::size_t i = 0; i < soil_.size() && !cohesion_varies; ++i) cohesion_varies = !of_material(i);
+  if (cohesion_varies) f.cohesion.assign(n, 0.0);
+  if (!soil_.eta.empty()) f.viscosity.assign(n, 0.0);
+  for (std::size_t i = 0; i < soil_.size(); ++i) {
+    const auto k = static_cast<std::size_t>(soil_.id[i]);
+    if (cohesion_varies) f.cohesion[k] = soil_.c[i];
+    if (!soil_.eta.empty()) f.viscosity[k] = soil_.eta[i];
+  }
 }
 
 HistoryRow Simulation::history_row() const {
@@ -66,8 +84,7 @@ double Simulation::density_rise() const {
   double rise = 0.0;
 #pragma omp parallel for schedule(static) reduction(max : rise)
   for (std::size_t i = 0; i < soil_.n_active; ++i) {
-    const double rho0 = constants().soils[static_cast<std::size_t>(soil_.material[i])].eos.rho0;
-    rise = std::max(rise, soil_.rho[i] / rho0 - 1.0);
+    rise = std::max(rise, soil_.rho[i] / reference_density(constants(), soil_, i) - 1.0);
   }
   return rise;
 }
@@ -130,8 +147,14 @@ std::int64_t Simulation::at_open_end() const {
   return count;
 }
 
+/// Outlines of the densities that the particles have: the mean of each material where its density varies.
 SlideMass Simulation::mass() const {
-  return {total_mass(soil_), mass_of(model_.slide, model_.materials) + model_.left_out};
+  const double filled = total_mass(soil_), outline = mass_of(model_.slide, model_.materials) + model_.left_out;
+  if (soil_.rho0.empty()) return {filled, outline};
+  double nominal = 0.0;
+  for (std::size_t i = 0; i < soil_.size(); ++i)
+    nominal += soil_.m[i] / soil_.rho0[i] * model_.materials[static_cast<std::size_t>(soil_.material[i])].rho0;
+  return {filled, outline * (filled / nominal)};
 }
 
 /// How far the soil went, and how much of it is above the energy line with what it still has of kinetic energy.

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <iterator>
+#include <map>
+#include <numeric>
 #include <string>
 
 #include "material/pore_pressure.hpp"
@@ -55,6 +58,8 @@ ParticlePlan plan_particles(const Model& model) {
 double particle_mass(const Model& model, const SoilPoint& point) {
   return model.materials[static_cast<std::size_t>(point.material)].rho0 * model.dx * model.dx * point.cells;
 }
+
+double cell_area(const Model& model, const SoilPoint& point) { return model.dx * model.dx * point.cells; }
 
 SlideMass slide_mass(const Model& model, const ParticlePlan& plan) {
   SlideMass mass{0.0, mass_of(model.slide, model.materials) + model.left_out};
@@ -118,18 +123,55 @@ namespace {
 /// speed of the fall, rho v^2 with v^2 = 2 g H. [Pa]
 double largest_pressure(const Model& model, double rho0) { return 3.0 * rho0 * norm(model.g) * fall_height(model); }
 
+/// Widens the bounds by soil of this law, density and viscosity. The stiffness is that of the law: a wave in lighter
+/// soil is faster, c^2 = c_s^2 rho0 of the law/rho0.
+/// @param p  largest pressure [Pa]
+void widen(StepBounds& bounds, const Model& model, const FlowConstants& k, const ConstitutiveParameters& law,
+           double rho0, double eta, double p) {
+  const bool elastic = keeps_elastic_stress(model.rheology.yield);
+  const double c2 = k.c_s * k.c_s * (law.eos.rho0 / rho0);
+  if (elastic || rho0 != law.eos.rho0)
+    bounds.c = std::max(bounds.c, std::sqrt(c2 + (elastic ? 4.0 / 3.0 * law.G / rho0 : 0.0)));
+  bounds.nu = std::max(bounds.nu, (eta + largest_viscosity(law.mu_i, p)) / rho0);
+}
+
+/// Mean of rho0/rho0 of the material over each particle and those above it in its column, one spacing wide.
+std::vector<double> load_ratios(const Model& model, const std::vector<SoilPoint>& points,
+                                const std::vector<double>& rho0) {
+  std::vector<double> ratios(points.size(), 1.0);
+  if (rho0.empty()) return ratios;
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) { return points[i].x.y; });
+  std::map<std::int64_t, Vec2> columns;  ///< area above, and area times ratio
+  for (const std::size_t i : order) {
+    Vec2& above = columns[static_cast<std::int64_t>(std::floor(points[i].x.x / model.dx))];
+    const double of_material = model.materials[static_cast<std::size_t>(points[i].material)].rho0;
+    above += points[i].cells * Vec2{1.0, rho0[i] / of_material};
+    ratios[i] = above.y / above.x;
+  }
+  return ratios;
+}
+
 }  // namespace
 
 StepBounds step_bounds(const Model& model, const FlowConstants& k) {
   StepBounds bounds{model.numerics.cfl, k.h, k.c_s, 0.0};
   double densest = 0.0;
   for (const ConstitutiveParameters& law : k.soils) densest = std::max(densest, law.eos.rho0);
-  for (const ConstitutiveParameters& law : k.soils) {
-    if (keeps_elastic_stress(model.rheology.yield))
-      bounds.c = std::max(bounds.c, std::sqrt(k.c_s * k.c_s + 4.0 / 3.0 * law.G / law.eos.rho0));
-    const double eta = law.eta + largest_viscosity(law.mu_i, largest_pressure(model, densest));
-    bounds.nu = std::max(bounds.nu, eta / law.eos.rho0);
-  }
+  for (const ConstitutiveParameters& law : k.soils)
+    widen(bounds, model, k, law, law.eos.rho0, law.eta, largest_pressure(model, densest));
+  return bounds;
+}
+
+StepBounds step_bounds(const Model& model, const FlowConstants& k, const Soil& soil) {
+  if (soil.rho0.empty() && soil.eta.empty()) return step_bounds(model, k);
+  StepBounds bounds{model.numerics.cfl, k.h, k.c_s, 0.0};
+  double densest = 0.0;
+  for (std::size_t i = 0; i < soil.size(); ++i) densest = std::max(densest, reference_density(k, soil, i));
+  for (std::size_t i = 0; i < soil.size(); ++i)
+    widen(bounds, model, k, k.soils[static_cast<std::size_t>(soil.material[i])], reference_density(k, soil, i),
+          stated_viscosity(k, soil, i), largest_pressure(model, densest));
   return bounds;
 }
 
@@ -151,19 +193,22 @@ Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& p
   soil.tan_phi = properties.tan_phi;
   apply_water(model, plan, soil.tan_phi);
   soil.c = properties.c;
+  soil.rho0 = properties.rho0;
+  soil.eta = properties.eta;
+  const std::vector<double> ratios = load_ratios(model, points, properties.rho0);
   soil.x_sorted.resize(points.size());
   soil.y_sorted.resize(points.size());
   soil.material.resize(points.size());
   soil.id.resize(points.size());
   soil.n_active = points.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto material = static_cast<std::size_t>(points[i].material);
-    const double p = loaded ? mass_above(model.slide, model.materials, points[i].x) * std::abs(model.g.y) : 0.0;
+    const double above = loaded ? ratios[i] * mass_above(model.slide, model.materials, points[i].x) : 0.0;
+    const double p = above * std::abs(model.g.y);
     soil.x[i] = points[i].x.x;
     soil.y[i] = points[i].x.y;
-    soil.rho[i] = k.soils[material].eos.density(p);
-    soil.m[i] = particle_mass(model, points[i]);
     soil.material[i] = points[i].material;
+    soil.rho[i] = equation_of_state(k, soil, i).density(p);
+    soil.m[i] = soil.rho0.empty() ? particle_mass(model, points[i]) : soil.rho0[i] * cell_area(model, points[i]);
     soil.id[i] = static_cast<std::int32_t>(i);
   }
   return soil;

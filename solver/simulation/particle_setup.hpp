@@ -41,13 +41,17 @@ ParticlePlan plan_particles(const Model& model);
 
 /// Mass of a particle of the plan per metre of width [kg/m].
 double particle_mass(const Model& model, const SoilPoint& point);
+/// Area that a particle of the plan stands for [m2].
+double cell_area(const Model& model, const SoilPoint& point);
 /// Mass that the particles of a plan carry, and that of the outlines.
 SlideMass slide_mass(const Model& model, const ParticlePlan& plan);
 
 /// Properties of the soil particles of a plan, in its order: those that may vary within a material.
 struct SoilProperties {
-  std::vector<double> tan_phi;  ///< tangent of the friction angle [-], >= 0
-  std::vector<double> c;        ///< cohesion [Pa], >= 0
+  std::vector<double> tan_phi;    ///< tangent of the friction angle [-], >= 0
+  std::vector<double> c;          ///< cohesion [Pa], >= 0
+  std::vector<double> rho0 = {};  ///< reference density [kg/m3], > 0; empty: that of each material
+  std::vector<double> eta = {};   ///< viscosity once it has yielded [Pa s], >= 0; empty: that of each material
 };
 /// The properties that the materials give.
 SoilProperties material_properties(const Model& model, const ParticlePlan& plan);
@@ -58,12 +62,16 @@ FlowConstants flow_constants(const Model& model);
 /// What bounds the time step; the compression wave is that of the stiffest material: sqrt(c_s^2 + 4/3 G/rho0) with the
 /// elastic law, c_s otherwise.
 StepBounds step_bounds(const Model& model, const FlowConstants& k);
+/// The same where density or viscosity vary from particle to particle: of the lightest and of the most viscous one.
+StepBounds step_bounds(const Model& model, const FlowConstants& k, const Soil& soil);
 /// Time step at these extrema of speed and acceleration: the fixed one, or Courant's up to the largest allowed [s].
 double time_step(const TimeControl& time, const StepBounds& bounds, double max_speed, double max_acceleration);
 /// First time step of the model [s], to estimate the number of steps.
 double first_step(const Model& model);
 
 /// The soil of a plan at rest, its density that of the initial pressure. The arrays of the state alone are filled.
+/// Where the density varies, a particle carries the load of the outlines above it times the mean of rho0/rho0 of the
+/// material over the particles above it in its column.
 /// @param properties  as many values as the plan has soil particles
 Soil make_soil(const Model& model, const FlowConstants& k, const ParticlePlan& plan, const SoilProperties& properties);
 /// Wall particles without stress, in the order of the plan.

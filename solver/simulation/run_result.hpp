@@ -13,13 +13,23 @@
 
 namespace talus {
 
-/// The random field of a run in four numbers.
+/// What came out for one random property, in the unit of property_names.
+struct PropertySummary {
+  std::string name;       ///< "cohesion"
+  double mean = 0.0;      ///< of the distribution that is drawn from, over the particles that it applies to
+  double cov = 0.0;       ///< coefficient of variation of the same: averaging over cells included [-]
+  double run_mean = 0.0;  ///< mean over these particles in this run
+  double run_cov = 0.0;   ///< coefficient of variation over these particles in this run [-]
+};
+
+/// The random field of a run in a few numbers.
 struct FieldSummary {
   double captured_variance = 0.0;  ///< share of the variance that the truncated expansion carries [-]
   double cov = 0.0;                ///< coefficient of variation of tan(phi) that is drawn, from the mean variance [-]
   double mean_phi = 0.0;           ///< mean over the soil particles of the friction angle [rad]
   std::int64_t terms = 0;          ///< coefficients used
   double embedding_error = 0.0;    ///< bound of the error of any covariance that circulant embedding makes [-]
+  std::vector<PropertySummary> properties = {};  ///< empty in the short form of the field, and without one
 };
 
 /// What the particles carry of the soil of a case, per metre of width.

@@ -53,7 +53,7 @@ Simulation::Simulation(const Model& model, const ParticlePlan& plan, const SoilP
       energy_account_(constants(), soil_),
       gauges_(model.targets, model.terrain.run_out.to, model.dx),
       rest_rule_(model.time.stop_at_rest),
-      bounds_(step_bounds(model, constants())),
+      bounds_(step_bounds(model, constants(), soil_)),
       max_acceleration_(norm(model.g)) {
   flow_->observe_loads(gauges_.structures());
   contact_.observe_loads(gauges_.structures());

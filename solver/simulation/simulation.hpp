@@ -88,6 +88,7 @@ class Simulation {
   void add_friction_facts(RunFacts& f) const;
   std::vector<TargetOutcome> target_outcomes() const;
   SlideMass mass() const;
+  void add_varying_properties(Frame& f) const;
 
   Model model_;
   Soil soil_;

@@ -101,12 +101,12 @@ struct FlowRateSums {
   }
 };
 
-/// Viscosity of a point once it has yielded: that of its material, or that of mu(I).
+/// Viscosity of a point once it has yielded: that of its material, or its own, or that of mu(I).
 /// @param at  as in update_point
 template <class Real, class Point>
 HWY_INLINE Real yielded_viscosity(const Point& at, Real p, Real gamma_dot) {
   using Parameters = const ConstitutiveParameters&;
-  const Real eta = at.constant([](Parameters soil) { return soil.eta; });
+  const Real eta = at.viscosity();
   const Real d = at.constant([](Parameters soil) { return soil.mu_i.d; });
   if (!any(d > Real(0.0))) return eta;
   const InertialFriction<Real> mu_i{.delta_mu = at.constant([](Parameters soil) { return soil.mu_i.delta_mu; }),
@@ -126,9 +126,10 @@ HWY_INLINE auto pressure_of(const FlowConstants& k, const Point& at) {
 
 /// Pressure, stress, and the rates of density and elastic stress.                [Z20] Eqs. 1, 3-10
 /// @param strength  of the soil, or of the wall that it slides along
-/// @param at        the point, or the points of a cluster: q(), constant(get) of its ConstitutiveParameters; elastic()
-///                  as the model needs it; set_strain_rate(e), set_stress(s, p), set_rates(drho, gamma_dot);
-///                  set_powers(f), which calls f(volume) for StressPowers where an evaluation measures them
+/// @param at        the point, or the points of a cluster: q(), reference_density(), viscosity(), constant(get) of its
+///                  ConstitutiveParameters; elastic() as the model needs it; set_strain_rate(e), set_stress(s, p),
+///                  set_rates(drho, gamma_dot); set_powers(f), which calls f(volume) for StressPowers where an
+///                  evaluation measures them
 template <class Real, class Model, class Point>
 HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const FlowRates<Real>& rates,
                              const MohrCoulomb<Real>& strength, Point&& at) {
@@ -150,7 +151,7 @@ HWY_INLINE void update_point(const FlowConstants& k, const Model& model, const F
   const Deviator<Real> t = model.stress(state, at.elastic());
   at.set_stress(cauchy(p, t), p);
   // drho/dt = -rho expansion + rho0 diffusion
-  const Real rho0 = at.constant([](Parameters soil) { return soil.eos.rho0; });
+  const Real rho0 = at.reference_density();
   at.set_rates(rho0 * fnma(q + Real(1.0), rates.expansion, rates.diffusion), gamma_dot);
   at.set_powers([&](Real V) HWY_ATTR {
     return stress_powers(V, p, t, e, state.eta, trace(rates.L), rates.expansion, rates.diffusion, q);

@@ -44,6 +44,20 @@ struct FlowConstants {
   std::vector<WallFriction> boundaries;       ///< by boundary, then the stretches of all boundaries
 };
 
+/// Reference density of a soil particle: its own, or that of its material [kg/m3].
+inline double reference_density(const FlowConstants& k, const Soil& soil, std::size_t i) {
+  return soil.rho0.empty() ? k.soils[static_cast<std::size_t>(soil.material[i])].eos.rho0 : soil.rho0[i];
+}
+/// Viscosity of a soil particle once it has yielded, without mu(I): its own, or that of its material [Pa s].
+inline double stated_viscosity(const FlowConstants& k, const Soil& soil, std::size_t i) {
+  return soil.eta.empty() ? k.soils[static_cast<std::size_t>(soil.material[i])].eta : soil.eta[i];
+}
+/// Equation of state of a soil particle. Its stiffness is that of the material whatever its own density, so that equal
+/// pressures mean equal rho/rho0 and the diffusion of density leaves soil of varying density at rest alone.
+inline EquationOfState equation_of_state(const FlowConstants& k, const Soil& soil, std::size_t i) {
+  return {reference_density(k, soil, i), k.soils[static_cast<std::size_t>(soil.material[i])].eos.B};
+}
+
 /// @param c_s  speed of sound [m/s]
 std::vector<ConstitutiveParameters> constitutive_parameters(const std::vector<Material>& materials,
                                                             const Rheology& rheology, double c_s);

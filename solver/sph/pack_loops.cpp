@@ -58,6 +58,7 @@ struct Packer {
         material[l] = static_cast<float>(soil.material[i + l]);
         rho0[l] = k.soils[static_cast<std::size_t>(soil.material[i + l])].eos.rho0;
       }
+    if (!soil.rho0.empty()) std::copy_n(soil.rho0.data() + i, count, rho0);
     std::transform(rho0, rho0 + lanes, least, least_density);
     const Wide q = s.rho / load(rho0, lanes) - each(1.0), rho = pair_density(s.rho, load(least, lanes));
     const Vector<Wide> x{s.x - each(f.fixed.lo.x), s.y - each(f.fixed.lo.y)};

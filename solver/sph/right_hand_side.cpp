@@ -44,9 +44,11 @@ struct SoilPoint {
   const ConstitutiveParameters& parameters(std::size_t j) const {
     return k.soils[static_cast<std::size_t>(soil.material[j])];
   }
-  double q() const { return soil.rho[i] / parameters(i).eos.rho0 - 1.0; }
+  double reference_density() const { return talus::reference_density(k, soil, i); }
+  double viscosity() const { return stated_viscosity(k, soil, i); }
+  double q() const { return soil.rho[i] / reference_density() - 1.0; }
   double c() const { return soil.c[i]; }
-  double density() const { return pair_density(soil.rho[i], least_density(parameters(i).eos.rho0)); }
+  double density() const { return pair_density(soil.rho[i], least_density(reference_density())); }
   double volume() const { return soil.m[i] / density(); }
   template <class Get>
   double constant(Get&& get) const {
@@ -277,7 +279,7 @@ double filtered_density(const FlowConstants& k, const Soil& soil, std::size_t i,
                         const ParticleCells& cells) {
   const double support2 = 4.0 * k.h * k.h;
   const ShepardKernel kernel(k.numerics.kernel, k.h);
-  const auto rho0 = [&](std::size_t j) { return k.soils[static_cast<std::size_t>(soil.material[j])].eos.rho0; };
+  const auto rho0 = [&](std::size_t j) { return reference_density(k, soil, j); };
   ShepardSum sum;
   for_neighbours(cells.soil, soil, soil.position(i), support2, [&](std::size_t j, Vector<double>, double r2) {
     sum.add(soil.m[j] / soil.rho[j], soil.rho[j] / rho0(j), kernel.W(r2));

@@ -37,6 +37,17 @@ struct ClusterPoint {
       value[l] = static_cast<float>(get(k.soils[static_cast<std::size_t>(soil.material[i + l])]));
     return load(value);
   }
+  /// Values that each particle may have of its own.
+  template <class Get>
+  HWY_INLINE Lanes own_or_constant(const std::vector<double>& own, Get&& get) const {
+    return own.empty() ? constant(get) : narrow(load(own.data() + i, count));
+  }
+  HWY_INLINE Lanes reference_density() const {
+    return own_or_constant(soil.rho0, [](const ConstitutiveParameters& of) { return of.eos.rho0; });
+  }
+  HWY_INLINE Lanes viscosity() const {
+    return own_or_constant(soil.eta, [](const ConstitutiveParameters& of) { return of.eta; });
+  }
   HWY_INLINE const ClusterPoint& elastic() const { return *this; }
   HWY_INLINE void set_strain_rate(Symmetric<Lanes> e) const {
     const Symmetric<Lanes> over_h = Lanes(f.fixed.quantum * f.fixed.quantum / k.h) * e;

@@ -128,6 +128,8 @@ class Mutations {
         object(items, here, schema_at + "/*");
       else if (items["type"] == "array")
         array(items, here, schema_at + "/*");
+      else if (items["type"] == "string")
+        string(items, here);
       else
         number(items, here);
     }
@@ -210,6 +212,26 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   mutations.spoil(other);
   other["targets"] = {{{"name", "dam"}, {"structure", {{"outline_csv", "case-outline.csv"}}}}};
   other["study"]["hazard_classes"] = {{{"name", "high"}, {"dynamic_pressure_Pa", 1e4}, {"speed_m_s", 2}}};
+  // Properties in all of their forms.
+  other = example("properties");
+  mutations.spoil(other);
+  for (const auto& [key, suffix] : {std::pair("friction", "tan_phi"), std::pair("cohesion", "kPa"),
+                                    std::pair("unit_weight", "kN_m3"), std::pair("viscosity", "Pa_s")}) {
+    json& property = other["random_field"]["properties"][key];
+    const auto with = [&, suffix = suffix](const char* stem) { return std::string(stem) + "_" + suffix; };
+    property = {{"marginal", "normal"}, {with("mean"), 1}, {with("stdev"), 0.1}, {with("low"), 0.6}, {with("high"), 2}};
+    for (const char* word : {"varies", "layers", "material"}) property[word] = "";
+    property["varies"] = "in_space";
+    property["layers"] = "one_field";
+  }
+  mutations.spoil(other);
+  for (const auto& [key, suffix] : {std::pair("friction", "tan_phi"), std::pair("cohesion", "kPa"),
+                                    std::pair("unit_weight", "kN_m3"), std::pair("viscosity", "Pa_s")})
+    other["random_field"]["properties"][key] = {
+        {std::string("log_mean_") + suffix, 0.1}, {"log_stdev", 0.1}, {"data", {{1, 1, 1, 0}}}};
+  mutations.spoil(other);
+  for (const char* key : {"friction", "cohesion", "unit_weight", "viscosity"})
+    other["random_field"]["properties"][key] = {{"cov", 0.1}, {"data_csv", "case-log.csv"}};
   mutations.spoil(other);
   std::set<std::string> keys;
   collect(test::SchemaCheck("case").document(), "", keys);

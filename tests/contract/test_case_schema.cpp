@@ -101,10 +101,19 @@ TEST(CaseSchema, DefaultsAreTheReaders) {
   const json turned = json::parse(load_case(document, "").resolved.dump());
   document["particle_lattice"] = {{"shift_x_spacings", 0.25}};
   const json shifted = json::parse(load_case(document, "").resolved.dump());
+  document["random_field"] = {{"correlation_length_m", 1}};
+  for (const char* property : {"friction", "cohesion", "unit_weight", "viscosity"})
+    document["random_field"]["properties"][property] = {{"cov", 0.1}};
+  document["material"] = {
+      {"density_kg_m3", 1900}, {"friction_angle_deg", 30}, {"cohesion_Pa", 5}, {"viscosity_Pa_s", 5}};
+  document["slide"]["outlines"][0].erase("material");
+  const json properties = json::parse(load_case(document, "").resolved.dump());
   std::size_t defaults = 0;
   for_each_key(schema.document(), "", [&](const std::string& pointer, const json& key, bool) {
     const json& lattice = pointer.ends_with("shift_x_spacings") ? turned : shifted;
-    const json& of_section = pointer.starts_with("/particle_lattice") ? lattice : switched_on;
+    const json& of_section = pointer.starts_with("/particle_lattice")          ? lattice
+                             : pointer.starts_with("/random_field/properties") ? properties
+                                                                               : switched_on;
     const json& resolved = plain.contains(json::json_pointer(pointer)) ? plain : of_section;
     if (!key.contains("default")) return;
     ++defaults;

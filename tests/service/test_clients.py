@@ -62,6 +62,22 @@ class Umbridge(ServiceTest):
         weak, strong = (model([[0.0] * self.TERMS, [0.0, mean]], config)[0][0] for mean in (-1.2, -0.3))
         self.assertGreater(weak, strong)
 
+    def test_coefficients_of_several_properties(self):
+        import umbridge
+        document = json.loads((SOURCE / "tests/solver/cli/trials/small-slope.json").read_text())
+        field = document["random_field"] = {"correlation_length_m": 2, "terms": 7}
+        field["properties"] = {"friction": {"cov": 0.1}, "cohesion": {"mean_kPa": 2, "cov": 0.3, "varies": "once"}}
+        document.update(time={"end_s": 1})
+        (self.dir / "models/c-phi.json").write_text(json.dumps(document))
+        model = umbridge.HTTPModel(self.daemon.url, "c-phi")
+        config = {"parameters": ["cohesion_mean_kPa", "friction_cov"]}
+        self.assertEqual(model.get_input_sizes(config), [8, 2])
+        weak, strong = (model([[0.0] * 7 + [z], [2.0, 0.1]], config)[0][0] for z in (-2.0, 5.0))
+        self.assertGreater(weak, strong)
+        firm = model([[0.0] * 8, [9.0, 0.1]], config)[0][0]
+        self.assertGreater(weak, firm)
+        (self.dir / "models/c-phi.json").unlink()
+
     def test_an_invalid_run_is_an_error_that_says_why(self):
         import umbridge
         document = json.loads((SOURCE / "tests/solver/cli/trials/small-slope.json").read_text())

@@ -2,6 +2,7 @@
 // Random soil for tests: a jittered lattice with non-uniform masses, densities, velocities and strengths, so that a
 // swapped index shows.
 
+#include <cmath>
 #include <cstdint>
 #include <random>
 
@@ -41,6 +42,19 @@ inline Soil random_soil(int nx, int ny, double dx, unsigned seed, int materials 
     s.id[i] = static_cast<std::int32_t>(i);
   }
   return s;
+}
+
+/// Gives each particle a reference density and a viscosity of its own; rho/rho0 and m/rho0 stay.
+inline void vary_properties(Soil& soil) {
+  soil.rho0.resize(soil.size());
+  soil.eta.resize(soil.size());
+  for (std::size_t i = 0; i < soil.size(); ++i) {
+    const double ratio = 1.0 + 0.3 * std::sin(1.7 * static_cast<double>(soil.id[i]));
+    soil.rho0[i] = 2000 * ratio;
+    soil.rho[i] *= ratio;
+    soil.m[i] *= ratio;
+    soil.eta[i] = 30 + 20 * std::cos(2.3 * static_cast<double>(soil.id[i]));
+  }
 }
 
 /// Sorts the soil by cell and returns the cells.

@@ -43,7 +43,7 @@ TEST(FieldKeys, ReachTheirMembers) {
   EXPECT_DOUBLE_EQ(f.trend, 0.5 * std::numbers::pi / 180);
   ASSERT_EQ(f.data.size(), 2u);
   EXPECT_EQ(f.data[0].x, (Vec2{3, 4}));
-  EXPECT_DOUBLE_EQ(f.data[0].phi, 25 * std::numbers::pi / 180);
+  EXPECT_DOUBLE_EQ(f.data[0].value, 25 * std::numbers::pi / 180);
   EXPECT_DOUBLE_EQ(f.data[0].error, 1.5 * std::numbers::pi / 180);
 }
 
@@ -133,9 +133,72 @@ TEST(FieldKeys, ProductModesAreForTheSeparableExponential) {
             std::string::npos);
 }
 
-DataTable table(const std::string& text, std::string* faults = nullptr) {
+/// Friction and cohesion with these keys, and others of random_field.
+Json properties(const Json& friction, const Json& cohesion, const Json& others = Json::object()) {
+  Json keys = {{"cov_tan_phi", nullptr}, {"properties", {{"friction", friction}, {"cohesion", cohesion}}}};
+  keys.update(others);
+  Json document = field(keys);
+  document["material"]["cohesion_kPa"] = 5;
+  return document;
+}
+
+/// Whether one of the faults begins with the text.
+bool has_fault(const Json& document, const std::string& start) {
+  const auto faults = faults_of(document);
+  return std::ranges::any_of(faults, [&](const std::string& line) { return line.starts_with(start); });
+}
+
+const std::string of_cohesion = "/random_field/properties/cohesion/data/0";
+
+TEST(FieldKeys, DataOfAPropertyInItsUnit) {
+  const FieldSpec f =
+      spec_of(properties({{"cov", 0.1}}, {{"cov", 0.3}, {"data", {{3, 4, 6, 0.5}}}}, {{"data", {{3, 4, 25, 1}}}}));
+  ASSERT_EQ(f.data.size(), 2u);
+  EXPECT_EQ(f.data[0].property, Property::cohesion);
+  EXPECT_DOUBLE_EQ(f.data[0].value, 6e3);
+  EXPECT_DOUBLE_EQ(f.data[0].error, 500);
+  EXPECT_EQ(f.data[1].property, Property::friction);
+  const FieldSpec under = spec_of(properties({{"cov", 0.1}, {"data", {{3, 4, 25, 1}}}}, {{"cov", 0.3}}));
+  EXPECT_EQ(under.data, std::vector<FieldDatum>{f.data[1]});
+}
+
+TEST(FieldKeys, DataOfAPropertyThatCannotBeMet) {
+  const Json soft = {{"cov", 0.1}}, datum = {{3, 4, 6, 0.5}};
+  const auto cohesion = [&](Json keys) {
+    keys["data"] = datum;
+    return properties(soft, keys);
+  };
+  EXPECT_TRUE(faults_of(cohesion({{"cov", 0.3}})).empty());
+  EXPECT_TRUE(has_fault(cohesion({{"cov", 0.3}, {"varies", "once"}}), of_cohesion + ": cannot be met"));
+  EXPECT_TRUE(has_fault(cohesion({{"marginal", "constant"}, {"mean_kPa", 6}}), of_cohesion + ": cannot be met"));
+  EXPECT_TRUE(
+      has_fault(cohesion({{"marginal", "uniform"}, {"low_kPa", 7}, {"high_kPa", 9}}),
+                of_cohesion + ": cannot be met: 6 kPa lies outside the distribution of cohesion, 7 kPa to 9 kPa"));
+  EXPECT_TRUE(has_fault(properties(soft, {{"cov", 0.3}, {"data", {{3, 4, -1, 0}}}}), of_cohesion + "/2: -1 is out of"));
+  EXPECT_TRUE(has_fault(properties(soft, {{"cov", 0.3}, {"data", {{3, 4, 6, 0.1}, {3, 4, 9, 0.1}}}}),
+                        "/random_field/properties/cohesion/data/1: 9 kPa contradicts " + of_cohesion + ", 6 kPa"));
+  EXPECT_TRUE(
+      faults_of(properties({{"cov", 0.1}, {"data", {{3, 4, 25, 0}}}}, {{"cov", 0.3}, {"data", datum}})).empty());
+  Json alone = properties(soft, {{"cov", 0.3}}, {{"data", {{3, 4, 25, 1}}}});
+  alone["random_field"]["properties"].erase("friction");
+  EXPECT_TRUE(has_fault(alone, "/random_field/data/0: cannot be met: properties does not state friction"));
+  EXPECT_TRUE(
+      has_fault(properties({{"cov", 0.1}, {"data", {{3, 4, 25, 0}}}}, {{"cov", 0.3}}, {{"data", {{3, 4, 25, 1}}}}),
+                "/random_field/data: is given beside properties.friction.data"));
+}
+
+TEST(FieldKeys, ATrendNeedsRandomFriction) {
+  Json document = properties({{"cov", 0.1}}, {{"cov", 0.3}}, {{"trend_deg_per_m", 0.5}});
+  EXPECT_TRUE(faults_of(document).empty());
+  document["random_field"]["trend_deg_per_m"] = -9;
+  EXPECT_TRUE(has_fault(document, "/random_field/trend_deg_per_m: makes a median friction angle of"));
+  document["random_field"]["properties"].erase("friction");
+  EXPECT_TRUE(has_fault(document, "/random_field/trend_deg_per_m: needs properties.friction"));
+}
+
+DataTable table(const std::string& text, std::string* faults = nullptr, Property property = Property::friction) {
   LineFaults found("bore.csv");
-  const DataTable out = read_data_table(text, 1000, found);
+  const DataTable out = read_data_table(text, 1000, property, found);
   Faults all;
   found.report(all);
   if (faults != nullptr) *faults = all.empty() ? "" : all.all()[0].pointer + ": " + all.all()[0].message;
@@ -150,6 +213,16 @@ TEST(DataTable, ColumnsByNameAndByOrder) {
   const DataTable plain = table("# CPT 7\n3 4 24.5\n");
   ASSERT_EQ(plain.rows.size(), 1u);
   EXPECT_EQ(plain.rows[0].cells, (std::array<std::string, 4>{"3", "4", "24.5", ""}));
+}
+
+// A log with columns of several properties serves each of them.
+TEST(DataTable, ColumnsOfTheProperty) {
+  const std::string log = "x,y,phi (deg),error of phi,c (kPa),error of c\n1,2,30,1.5,6,0.5\n";
+  EXPECT_EQ(table(log).rows[0].cells, (std::array<std::string, 4>{"1", "2", "30", "1.5"}));
+  EXPECT_EQ(table(log, nullptr, Property::cohesion).rows[0].cells, (std::array<std::string, 4>{"1", "2", "6", "0.5"}));
+  std::string faults;
+  EXPECT_TRUE(table("x,y,phi\n1,2,30\n", &faults, Property::cohesion).rows.empty());
+  EXPECT_NE(faults.find("bore.csv:1: has no column of this property"), std::string::npos) << faults;
 }
 
 TEST(DataTable, RefusesWhatItCannotTell) {

@@ -63,6 +63,46 @@ TEST(FieldVerb, CsvHoldsEveryParticleAndTheSummaryAgrees) {
   EXPECT_LT(lo, hi);
 }
 
+// Tables have every random property behind the columns of friction; a picture shows the one that is named.
+TEST(FieldVerb, OtherProperties) {
+  const std::string properties = TALUS_SOURCE_DIR "/schemas/examples/good/case-properties.json";
+  const test::TemporaryDirectory directory;
+  const Outcome outcome = talus({"field", properties, "--realization", "1", "--json", "--out", directory / "a.csv"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const std::string text = read_file(directory / "a.csv", std::size_t{1} << 20);
+  EXPECT_TRUE(contains(text, "x_m,y_m,friction_angle_deg,tan_phi,cohesion_kPa,unit_weight_kN_m3,viscosity_Pa_s\n"));
+  const json summary = json::parse(outcome.out);
+  EXPECT_EQ(summary["unit_weight_kN_m3"]["min"], summary["unit_weight_kN_m3"]["max"]);
+  EXPECT_LT(summary["cohesion_kPa"]["min"], summary["cohesion_kPa"]["max"]);
+  for (const char* name : {"cohesion", "unit_weight", "viscosity"}) {
+    const std::string file = directory / (std::string(name) + ".svg");
+    ASSERT_EQ(talus({"field", properties, "--realization", "1", "--property", name, "--out", file}).code, 0) << name;
+    EXPECT_TRUE(contains(read_file(file, std::size_t{4} << 20), name == std::string("cohesion") ? "Cohesion" : "mean"));
+  }
+  const Outcome none = talus({"field", case_file, "--property", "cohesion", "--out", directory / "b.svg"});
+  EXPECT_EQ(none.code, 3);
+  EXPECT_TRUE(contains(none.err, "does not draw cohesion")) << none.err;
+  EXPECT_FALSE(std::filesystem::exists(directory / "b.svg"));
+  EXPECT_EQ(talus({"field", case_file, "--property", "colour", "--out", directory / "b.svg"}).code, 2);
+}
+
+// Median and spread of every random property in tables, of the one that is named in a picture.
+TEST(FieldVerb, SpreadOfAProperty) {
+  const std::string with_log = TALUS_SOURCE_DIR "/schemas/examples/good/case-property-data.json";
+  const test::TemporaryDirectory directory;
+  ASSERT_EQ(talus({"field", with_log, "--spread", "--out", directory / "a.csv"}).code, 0);
+  const std::string text = read_file(directory / "a.csv", std::size_t{1} << 20);
+  EXPECT_TRUE(contains(text,
+                       "x_m,y_m,friction_angle_deg,tan_phi,cohesion_kPa,median_friction_angle_deg,"
+                       "stdev_friction_angle_deg,median_cohesion_kPa,stdev_cohesion_kPa\n"));
+  const std::string file = directory / "a.svg";
+  ASSERT_EQ(talus({"field", with_log, "--spread", "--property", "cohesion", "--realization", "1", "--out", file}).code,
+            0);
+  const std::string picture = read_file(file, std::size_t{16} << 20);
+  for (const char* part : {"Median, given the data", "standard deviation (kPa)", "8.5 kPa ± 1.0", "6.0 kPa ± 0.5"})
+    EXPECT_TRUE(contains(picture, part)) << part;
+}
+
 // ln tan(phi) = mu + sigma Z is linear in xi: the fields of xi and -xi lie symmetrically about mu.
 TEST(FieldVerb, GivenCoefficientsMakeTheField) {
   const test::TemporaryDirectory directory;

@@ -30,7 +30,6 @@ Frame block_of_soil(double time, double moved) {
   frame.density.assign(frame.n_soil, 2000);
   frame.pressure.assign(frame.n_soil, 1000);
   frame.tan_phi.assign(frame.n_soil, 0.4);
-  frame.cohesion.assign(frame.n_soil, 0);
   frame.shear_rate.assign(frame.n_soil, 0);
   frame.stress.assign(frame.n_soil, {});
   return frame;

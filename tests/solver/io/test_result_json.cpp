@@ -48,7 +48,12 @@ RunResult sample_result() {
           .digest = "0123456789abcdef",
           .backend = "vectorised",
           .simd = "AVX2",
-          .field = {.captured_variance = 0.016, .cov = 0.04, .mean_phi = radians(25.0), .terms = 5},
+          .field = {.captured_variance = 0.016,
+                    .cov = 0.04,
+                    .mean_phi = radians(25.0),
+                    .terms = 5,
+                    .properties = {{.name = "friction", .mean = 0.5, .cov = 0.25, .run_mean = 0.75, .run_cov = 0.125},
+                                   {.name = "unit_weight", .mean = 19, .cov = 0.5, .run_mean = 18, .run_cov = 0}}},
           .energy = {.kinetic = 1,
                      .potential = -1024,
                      .compression = 2,
@@ -137,6 +142,9 @@ TEST(ResultJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(d["field"]["cov_tan_phi"], 0.04);
   EXPECT_NEAR(d["field"]["mean_friction_angle_deg"], 25.0, 1e-13);
   EXPECT_EQ(d["field"]["terms"], 5);
+  EXPECT_EQ(d["field"]["properties"],
+            (json{{"friction", {{"mean_tan_phi", 0.5}, {"cov", 0.25}, {"run_mean_tan_phi", 0.75}, {"run_cov", 0.125}}},
+                  {"unit_weight", {{"mean_kN_m3", 19.0}, {"cov", 0.5}, {"run_mean_kN_m3", 18.0}, {"run_cov", 0.0}}}}));
   EXPECT_EQ(d["quality"]["verdict"], "invalid");
   EXPECT_EQ(d["quality"]["reasons"].size(), 2u);
   EXPECT_EQ(
@@ -315,7 +323,8 @@ TEST(ResultJson, NamesAnyKeyThatIsMissing) {
     const std::string key = pointer.substr(1);
     if (key == "backend" || key == "simd" || key == "quality" || key == "warnings" || key == "mass_kg_m" ||
         key == "energy" || key == "field/cov_tan_phi" || key == "lower_bounds" || key == "front_thickness_m" ||
-        key == "notes" || key == "targets" || key == "energy/numerical_share")
+        key == "notes" || key == "targets" || key == "energy/numerical_share" || key == "field/properties" ||
+        key == "field/properties/friction" || key == "field/properties/unit_weight")
       continue;  // came later
     if (const Measure* measure = find_measure(key); measure && measure != measure_table.data()) continue;
     const json::json_pointer place(pointer);

@@ -88,6 +88,38 @@ TEST(Snapshots, ComeBack) {
   EXPECT_EQ(test::names_in(dir.path()), (std::vector<std::string>{"s.vtkhdf", "s.xdmf"}));
 }
 
+// Properties that vary within a material are there where a frame has them, in file and sidecar, also after a
+// resumption; a file of frames without them does not name them.
+TEST(Snapshots, OfVaryingProperties) {
+  const TemporaryDirectory dir;
+  const auto frame = [](std::size_t k) {
+    Frame f = known_frame(n, n_soil, k);
+    for (std::size_t i = 0; i < n; ++i) f.cohesion.push_back(i < n_soil ? 1000.0 + static_cast<double>(i) : 0.0);
+    for (std::size_t i = 0; i < n; ++i) f.viscosity.push_back(i < n_soil ? 500.0 - static_cast<double>(i) : 0.0);
+    return f;
+  };
+  SnapshotWriter writer(dir / "s.vtkhdf", frame(0));
+  writer.append(frame(1));
+  writer.append(frame(2));
+  writer.close();
+  SnapshotWriter again = SnapshotWriter::resume(dir / "s.vtkhdf", 0.15);
+  again.append(frame(2));
+  again.close();
+  for (const std::size_t k : {0, 2}) {
+    const Frame found = read_frame(dir / "s.vtkhdf", k);
+    expect_equal(found, frame(k));
+    EXPECT_EQ(found.cohesion, frame(k).cohesion);
+    EXPECT_EQ(found.viscosity, frame(k).viscosity);
+  }
+  EXPECT_NE(read_file(dir / "s.xdmf", megabyte).find("cohesion_Pa"), std::string::npos);
+  write_uninterrupted(dir / "plain.vtkhdf", 2);
+  EXPECT_TRUE(read_frame(dir / "plain.vtkhdf", 1).cohesion.empty());
+  EXPECT_EQ(read_file(dir / "plain.xdmf", megabyte).find("cohesion_Pa"), std::string::npos);
+  Frame short_one = frame(0);
+  short_one.cohesion.pop_back();
+  EXPECT_THROW(SnapshotWriter(dir / "bad.vtkhdf", short_one), std::invalid_argument);
+}
+
 TEST(Snapshots, OfACaseFarFromZeroKeepItsOrigin) {
   const TemporaryDirectory dir;
   Frame far = known_frame(4, 2, 0);
@@ -226,7 +258,7 @@ Frame noise_frame(std::size_t particles, std::size_t k) {
   for (std::size_t i = 0; i < particles; ++i) {
     f.position[i] = f.displacement[i] =
         f.velocity[i] = {static_cast<float>(uniform(random)), static_cast<float>(uniform(random))};
-    f.density[i] = f.pressure[i] = f.cohesion[i] = f.shear_rate[i] = static_cast<float>(uniform(random));
+    f.density[i] = f.pressure[i] = f.shear_rate[i] = static_cast<float>(uniform(random));
   }
   return f;
 }

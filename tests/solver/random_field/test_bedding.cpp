@@ -55,6 +55,9 @@ TEST(Nugget, IsWhiteAndTakesItsShare) {
   EXPECT_DOUBLE_EQ(field.variance(points)[1], 0.7 * smooth.variance(points)[1] + 0.3);
   std::vector<double> xi(field.terms(), 0.0);
   for (const double value : field.gaussian(points, xi)) EXPECT_EQ(value, 0);
+  std::vector<double> modes(smooth.terms(), 0.7);
+  std::copy(modes.begin(), modes.end(), xi.begin());  // without noise: the smooth part alone, of the variance 0.7
+  EXPECT_NEAR(field.gaussian(points, xi)[0], std::sqrt(0.7) * smooth.gaussian(points, modes)[0], 1e-14);
   xi.back() = 0.4;
   const auto one = field.gaussian(points, xi);
   xi.back() = 0.5;

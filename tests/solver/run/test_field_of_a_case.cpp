@@ -115,11 +115,11 @@ TEST(FieldOfACase, SpreadIsThatOfTheRealizations) {
   const Case c =
       slope_with({{"data", {{4.0, 4.0, 30.0, 0.5}}}, {"covariance", "matern_3_2"}, {"sampler", "circulant_embedding"}});
   const ParticlePlan plan = plan_particles(c.model);
-  const FieldSpread spread = field_spread(c.model, *c.field, plan);
+  const FieldSpread spread = field_spread(c.model, *c.field, plan, Property::friction);
   const std::size_t near = particle_nearest(c, {4, 4}), far = particle_nearest(c, {9.5, 0.3});
-  EXPECT_NEAR(friction_angle_deg(spread.median_tan_phi[near]), 30, 1.0);
-  EXPECT_NEAR(friction_angle_deg(spread.median_tan_phi[far]), 25, 1.0);
-  EXPECT_LT(spread.stdev_phi[near], 0.4 * spread.stdev_phi[far]);
+  EXPECT_NEAR(friction_angle_deg(spread.median[near]), 30, 1.0);
+  EXPECT_NEAR(friction_angle_deg(spread.median[far]), 25, 1.0);
+  EXPECT_LT(spread.stdev[near], 0.4 * spread.stdev[far]);
   constexpr int n = 500;
   double sum = 0, squares = 0;
   for (int k = 0; k < n; ++k) {
@@ -128,7 +128,7 @@ TEST(FieldOfACase, SpreadIsThatOfTheRealizations) {
     squares += phi * phi;
   }
   // first order in sigma = 0.2; sampling error of a stdev of 500: 3 %
-  EXPECT_NEAR(spread.stdev_phi[far], std::sqrt(squares / n - sum / n * sum / n), 0.15 * spread.stdev_phi[far]);
+  EXPECT_NEAR(spread.stdev[far], std::sqrt(squares / n - sum / n * sum / n), 0.15 * spread.stdev[far]);
 }
 
 }  // namespace

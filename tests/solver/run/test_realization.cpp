@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "case/load.hpp"
+#include "random_field/random_field.hpp"
 #include "run/realization.hpp"
 
 namespace talus {

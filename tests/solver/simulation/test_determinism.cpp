@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <cmath>
+
 #include "models.hpp"
 #include "simulation/observables.hpp"
 #include "simulation/simulation.hpp"
@@ -53,6 +55,52 @@ TEST(Determinism, ARestoredRunGoesOnWithTheSameBits) {
       EXPECT_EQ(second.result().evaluations, whole.result().evaluations);
       EXPECT_EQ(second.result().max_speed, whole.result().max_speed);
     }
+}
+
+/// Densities and viscosities that vary from particle to particle.
+SoilProperties varied(const Model& m, const ParticlePlan& plan) {
+  SoilProperties properties = material_properties(m, plan);
+  for (std::size_t i = 0; i < plan.soil.size(); ++i) {
+    properties.rho0.push_back(m.materials[0].rho0 * (1.0 + 0.1 * std::sin(0.9 * static_cast<double>(i))));
+    properties.eta.push_back(40.0 + 30.0 * std::cos(1.3 * static_cast<double>(i)));
+  }
+  return properties;
+}
+
+TEST(Determinism, ARestoredRunKeepsPropertiesOfEachParticle) {
+  for (const auto precision : {Precision::single, Precision::full}) {
+    Model m = collapse(0.05);
+    m.numerics.precision = precision;
+    m.time.end = 0.3;
+    const ParticlePlan plan = plan_particles(m);
+    const SoilProperties properties = varied(m, plan);
+    Simulation whole(m, plan, properties);
+    while (!whole.finished()) whole.step(m.time.end);
+    Simulation first(m, plan, properties);
+    for (int k = 0; k < 61; ++k) first.step(m.time.end);
+    Simulation second(m, plan, properties);
+    second.restore(first.state());
+    while (!second.finished()) second.step(m.time.end);
+    EXPECT_EQ(second.result().digest, whole.result().digest);
+    Simulation uniform(m, plan);
+    EXPECT_THROW(uniform.restore(CheckpointState{}), IoError);
+    while (!uniform.finished()) uniform.step(m.time.end);
+    EXPECT_NE(uniform.result().digest, whole.result().digest);
+  }
+}
+
+TEST(Determinism, ThreadsGiveTheSameBitsWithPropertiesOfEachParticle) {
+  const Model m = collapse(0.05);
+  const ParticlePlan plan = plan_particles(m);
+  std::string digests[2];
+  for (int k = 0; k < 2; ++k) {
+    omp_set_num_threads(1 + k);
+    Simulation s(m, plan, varied(m, plan));
+    for (int step = 0; step < 60; ++step) s.step(m.time.end);
+    digests[k] = s.result().digest;
+  }
+  omp_set_num_threads(1);
+  EXPECT_EQ(digests[0], digests[1]);
 }
 
 TEST(Determinism, ListsOfNeighboursAreRenewedBeforeTheyMissAny) {

@@ -97,6 +97,20 @@ TEST(EnergyRuns, RandomStrengthChangesNothing) {
   EXPECT_LT(std::abs(*simulation.energy().created_share()), 0.01);
 }
 
+TEST(EnergyRuns, RandomDensityAndViscosityChangeNothing) {
+  Model m = slope();
+  const ParticlePlan plan = plan_particles(m);
+  SoilProperties properties = material_properties(m, plan);
+  for (std::size_t i = 0; i < plan.soil.size(); ++i) {
+    properties.rho0.push_back(2200 * (1.0 + 0.15 * std::sin(0.7 * static_cast<double>(i))));
+    properties.eta.push_back(900 + 800 * std::cos(0.3 * static_cast<double>(i)));
+  }
+  Simulation simulation(m, plan, properties);
+  while (!simulation.finished()) simulation.step(m.time.end);
+  EXPECT_LT(std::abs(*simulation.energy().created_share()), 0.01);
+  EXPECT_GT(simulation.energy().viscosity, 0.03 * simulation.energy().gravity_work());
+}
+
 TEST(EnergyRuns, WhatIsNotStableIsFound) {
   const std::vector<Slide> runs = {
       {"leapfrog", slope(),
