@@ -98,8 +98,8 @@ HttpReply exchange_once(const ServerUrl& server, const HttpRequest& request) {
 }
 
 [[noreturn]] void throw_io_error(const std::string& url, std::chrono::seconds limit, const Broken& broken) {
-  const auto bytes = [](std::size_t limit, const char* what) {
-    return " sends more than " + std::to_string(limit >> 10) + " KiB as the " + what;
+  const auto bytes = [](std::size_t most, const char* what) {
+    return " sends more than " + std::to_string(most >> 10) + " KiB as the " + what;
   };
   const std::string no_talusd = ": that is no talusd; check the URL";
   if (!broken.connected)
