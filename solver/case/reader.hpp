@@ -186,7 +186,7 @@ std::optional<double> read_number(const Json& value, const Quantity& q, const st
 /// The JSON Schema of a number: type and range.
 Json number_schema(const Quantity& q, std::string_view type = "number");
 
-/// A value as it stands in the file, shortened.
+/// A value as it stands in the file, shortened; of an array or an object with more than 100 values how many it holds.
 std::string quote(const Json& value);
 
 }  // namespace talus
