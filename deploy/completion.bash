@@ -52,7 +52,7 @@ _talus_argument_of() {
     --yields) echo elastic regularized ;;
     --precisions) echo single double ;;
     --new-token) echo submit read ;;
-    --json | --resume | --figures | --retry-failed | --no-figures | --prepare | --from-runs | --watch | --keys | --walls) return 1 ;;
+    --json | --resume | --figures | --retry-failed | --no-figures | --prepare | --from-runs | --watch | --keys | --walls | --spread) return 1 ;;
     --*) echo "" ;;
     *) return 1 ;;
   esac

@@ -210,7 +210,7 @@ class Run(Directory):
         self.assertIn("warning: /particle_spacing_m the slide is 4 particles thick at most, where 5 are needed", self.stderr)
 
     def test_a_short_correlation_length_is_doubtful_where_the_field_varies(self):
-        settings = ["random_field.correlation_length_m=0.2", "random_field.terms=2000", "time.end_s=6"]
+        settings = ["random_field.correlation_length_m=0.2", "random_field.cell_average=false", "random_field.terms=2000", "time.end_s=6"]
         self.assert_says("short_correlation_length", "doubtful", *settings, case=SMALL, extra=["--realization", 0])
         quality, _ = self.verdict(*settings, case=SMALL)  # the median run
         self.assertNotIn("short_correlation_length", [reason["check"] for reason in quality["reasons"]])
@@ -277,7 +277,7 @@ class Run(Directory):
             self.assertNotIn("times slower", self.stderr)
 
     def test_all_commands_print_the_same_warnings(self):
-        settings = overrides(["random_field.correlation_length_m=0.2", "random_field.terms=10", "time.end_s=0.1"])
+        settings = overrides(["random_field.correlation_length_m=0.2", "random_field.cell_average=false", "random_field.terms=10", "time.end_s=0.1"])
         run = talus("run", SMALL, *settings, "--out", self.dir / "a")
         study = talus("study", SMALL, *settings, "--realizations", 1, "--out", self.dir / "b", "--no-figures")
         validate = talus("validate", SMALL, *settings)
