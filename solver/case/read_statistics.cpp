@@ -12,8 +12,8 @@ namespace talus {
 namespace {
 
 constexpr Quantity length{"m", 0.0, 1e6, true};
-constexpr Quantity log_stdev_range{"", -5.0, 5.0};
-constexpr Quantity cov_range{"", 0.0, 10.0};
+constexpr Quantity signed_log_stdev_range{"", -5.0, 5.0};
+constexpr Quantity cov_tan_phi_range{"", 0.0, 10.0};
 
 constexpr Names<FieldDirection> field_directions[] = {
     {"xy", FieldDirection::xy}, {"x", FieldDirection::x}, {"y", FieldDirection::y}};
@@ -128,10 +128,10 @@ void read_marginal(ObjectReader& in, FieldSpec& spec) {
                      {"Mean of tan(phi) itself, which the field has at every particle whatever its truncation and "
                       "averaging.",
                       "laboratory", "none: the median is that of the material"});
-  in.optional_number("log_stdev", stdev, log_stdev_range,
+  in.optional_number("log_stdev", stdev, signed_log_stdev_range,
                      {"Standard deviation of ln(tan phi); a negative one mirrors the draws, as [Z20] prints it.",
                       "[Z20] Eq. 12, Table 4", "none"});
-  in.optional_number("cov_tan_phi", cov, cov_range,
+  in.optional_number("cov_tan_phi", cov, cov_tan_phi_range,
                      {"Coefficient of variation of tan(phi) itself, of the whole field; truncation and averaging leave "
                       "less, which result.json states.",
                       "laboratory; 0.05 to 0.4 in soils", "none"});
@@ -147,9 +147,9 @@ void read_marginal(ObjectReader& in, FieldSpec& spec) {
   } else if (!log_form && !tan_form) {
     in.fault("log_stdev", "is missing (or cov_tan_phi, or properties): how much the friction angle varies");
   } else if (tan_form && !given("cov_tan_phi")) {
-    in.fault("cov_tan_phi", "is missing; " + cov_range.describe());
+    in.fault("cov_tan_phi", "is missing; " + cov_tan_phi_range.describe());
   } else if (log_form && !given("log_stdev")) {
-    in.fault("log_stdev", "is missing; " + log_stdev_range.describe());
+    in.fault("log_stdev", "is missing; " + signed_log_stdev_range.describe());
   }
   spec.sigma = stdev.value_or(spec.sigma);
   if (cov) spec.sigma = log_stdev(*cov);

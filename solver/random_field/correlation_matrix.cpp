@@ -8,7 +8,7 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Spectrum = Eigen::SelfAdjointEigenSolver<Matrix>;
+using Decomposition = Eigen::SelfAdjointEigenSolver<Matrix>;
 
 Matrix matrix_of(const CorrelationMatrix& of) {
   const auto n = static_cast<Eigen::Index>(of.size());
@@ -20,7 +20,7 @@ Matrix matrix_of(const CorrelationMatrix& of) {
 
 /// The nearest matrix whose eigenvalues are at least `least`.
 Matrix with_eigenvalues_from(double least, const Matrix& m) {
-  const Spectrum spectrum(m);
+  const Decomposition spectrum(m);
   const Matrix& v = spectrum.eigenvectors();
   return v * spectrum.eigenvalues().cwiseMax(least).asDiagonal() * v.transpose();
 }
@@ -32,7 +32,7 @@ CorrelationMatrix::CorrelationMatrix(std::size_t n) : n_(n), values_(n * n, 0.0)
 }
 
 bool CorrelationMatrix::positive_definite() const {
-  return n_ == 0 || Spectrum(matrix_of(*this), Eigen::EigenvaluesOnly).eigenvalues().minCoeff() > 1e-8;
+  return n_ == 0 || Decomposition(matrix_of(*this), Eigen::EigenvaluesOnly).eigenvalues().minCoeff() > 1e-8;
 }
 
 CorrelationMatrix CorrelationMatrix::nearest_valid(double least_eigenvalue) const {

@@ -26,7 +26,7 @@ std::vector<double> draw(const Field& field, const FieldSpec& spec, const StudyS
 }
 
 /// All of the summary but what is of a run, in the short form.
-FieldSummary summary_of(const FieldSpec& spec, const RandomField& field) {
+FieldSummary friction_summary(const FieldSpec& spec, const RandomField& field) {
   return {.captured_variance = field.captured_variance(),
           .cov = coefficient_of_variation(spec.sigma, field.variance()),
           .terms = static_cast<std::int64_t>(field.terms()),
@@ -43,7 +43,7 @@ void draw_friction(const FieldSpec& spec, const StudySpec& study, const Particle
   result.xi = draw(random, spec, study, identity);
   const std::vector<double> mu = log_medians_at(result.model, spec, random, points, tan_phi);
   tan_phi = lognormal(random.gaussian(points, result.xi), mu, spec.sigma);
-  result.summary = summary_of(spec, random);
+  result.summary = friction_summary(spec, random);
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::vector<double> property_values(const Strength& soil, const ParticlePlan& pl
 
 FieldSummary field_summary(const Model& model, const FieldSpec& spec, const ParticlePlan& plan) {
   if (!spec.properties.empty()) return summary_of(property_fields(model, spec), model, plan);
-  return summary_of(spec, make_field(model, spec));
+  return friction_summary(spec, make_field(model, spec));
 }
 
 FieldSpread field_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan, Property property) {

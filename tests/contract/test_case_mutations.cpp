@@ -212,6 +212,7 @@ TEST(CaseMutations, SchemaAndReaderRefuseEveryOne) {
   mutations.spoil(other);
   other["targets"] = {{{"name", "dam"}, {"structure", {{"outline_csv", "case-outline.csv"}}}}};
   other["study"]["hazard_classes"] = {{{"name", "high"}, {"dynamic_pressure_Pa", 1e4}, {"speed_m_s", 2}}};
+  mutations.spoil(other);
   // Properties in all of their forms.
   other = example("properties");
   mutations.spoil(other);

@@ -28,7 +28,6 @@ inline Frame known_frame(std::size_t n, std::size_t n_soil, std::size_t k) {
     f.density.push_back(value(6));
     f.pressure.push_back(value(7));
     f.tan_phi.push_back(std::tan(radians(static_cast<double>(i % 128) / 4.0 + static_cast<double>(k) / 64.0)));
-    f.cohesion.push_back(value(13));
     f.shear_rate.push_back(value(8));
     f.stress.push_back({value(9), value(10), value(11), value(12)});
   }

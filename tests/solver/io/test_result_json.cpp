@@ -248,7 +248,7 @@ TEST(ResultJson, OfAnEarlierVersionIsReadWithoutWhatCameLater) {
   EXPECT_TRUE(std::isnan(result.measures.front_at_thickness));
   EXPECT_EQ(result.front_thickness, 0.0);
   EXPECT_TRUE(result.notes.empty());
-  EXPECT_EQ(result.digest, earlier["digest"]);
+  EXPECT_EQ(result.digest, earlier["digest"].get<std::string>());
 }
 
 TEST(ResultJson, IsReadWithoutAMeasureThatCameLater) {

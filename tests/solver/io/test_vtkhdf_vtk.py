@@ -35,7 +35,7 @@ def expected(k):
         "density": known(6, k),
         "pressure": known(7, k),
         "friction_angle_deg": np.arange(N) % 128 / 4.0 + k / 64.0,
-        "cohesion": known(13, k),
+        "cohesion_Pa": known(13, k),
         "shear_rate": known(8, k),
         "stress": np.column_stack([known(9, k), known(10, k), known(11, k), known(12, k), np.zeros(N), np.zeros(N)]),
         "is_wall": np.where(np.arange(N) < N_SOIL, 0, 1),

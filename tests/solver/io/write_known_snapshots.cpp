@@ -37,7 +37,11 @@ int main(int argc, char** argv) try {
   const auto n = static_cast<std::size_t>(std::atol(argv[2]));
   const auto n_soil = static_cast<std::size_t>(std::atol(argv[3]));
   const auto steps = static_cast<std::size_t>(std::atol(argv[4]));
-  const auto frame = [&](std::size_t k) { return talus::test::known_frame(n, n_soil, k); };
+  const auto frame = [&](std::size_t k) {
+    Frame f = talus::test::known_frame(n, n_soil, k);
+    for (std::size_t i = 0; i < n; ++i) f.cohesion.push_back(talus::test::known_value(13, i, k));
+    return f;
+  };
 
   write_interrupted(directory / "snapshots.vtkhdf", steps, frame);
   write_interrupted(directory / "far.vtkhdf", 4, [&](std::size_t k) {

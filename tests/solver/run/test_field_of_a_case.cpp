@@ -5,11 +5,13 @@
 
 #include "case/load.hpp"
 #include "math/angle.hpp"
-#include "particles/geometry.hpp"
+#include "particle_nearest.hpp"
 #include "run/realization.hpp"
 
 namespace talus {
 namespace {
+
+using test::particle_nearest;
 
 Case slope_with(const Json& field) {
   Json document = {{"title", "slope"},
@@ -29,12 +31,6 @@ std::vector<double> angles_deg(const Case& c, std::int64_t realization, const Pa
        strength(c.model, c.field, c.study, plan, {.seed = 5, .realization = realization}).properties.tan_phi)
     out.push_back(friction_angle_deg(t));
   return out;
-}
-
-std::size_t particle_nearest(const Case& c, Vec2 x) {
-  const ParticlePlan plan = plan_particles(c.model);
-  return static_cast<std::size_t>(
-      std::ranges::min_element(plan.soil, {}, [&](const SoilPoint& p) { return norm2(p.x - x); }) - plan.soil.begin());
 }
 
 // Exact data at the places of particles are met to rounding, by every sampler, marginal and sign of sigma.

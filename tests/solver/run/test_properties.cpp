@@ -12,7 +12,7 @@ namespace talus {
 namespace {
 
 /// A slope of one soil with these properties.
-Case slope_with(const Json& properties, std::vector<std::string> changes = {}) {
+Case slope_of(const Json& properties, std::vector<std::string> changes = {}) {
   const Json document = {
       {"title", "slope"},
       {"particle_spacing_m", 0.5},
@@ -43,23 +43,23 @@ const Json all_constant = {{"friction", {{"marginal", "constant"}, {"mean_deg", 
 
 // Constant properties are the material's to the last bit, whatever the realization; another constant is another soil.
 TEST(Properties, ConstantOnesGiveTheBitsOfTheDeterministicCase) {
-  Case plain = slope_with(all_constant);
+  Case plain = slope_of(all_constant);
   plain.field.reset();
   const std::string wanted = digest_of(plain, std::nullopt);
-  EXPECT_EQ(digest_of(slope_with(all_constant), 4), wanted);
+  EXPECT_EQ(digest_of(slope_of(all_constant), 4), wanted);
   for (const auto& [key, mean] :
        {std::pair("friction", "mean_deg"), std::pair("cohesion", "mean_kPa"), std::pair("viscosity", "mean_Pa_s")}) {
     Json other = all_constant;
     other[key][mean] = 23;
-    EXPECT_NE(digest_of(slope_with(other), 4), wanted) << key;
+    EXPECT_NE(digest_of(slope_of(other), 4), wanted) << key;
   }
 }
 
 // A value that is drawn once is the same for all particles, and has the bits of the case that states it.
 TEST(Properties, OnceIsOneValueWithTheBitsOfThatValue) {
-  const Case c = slope_with({{"cohesion", {{"cov", 0.4}, {"varies", "once"}}},
-                             {"unit_weight", {{"cov", 0.05}, {"varies", "once"}}},
-                             {"viscosity", {{"cov", 0.3}, {"varies", "once"}}}});
+  const Case c = slope_of({{"cohesion", {{"cov", 0.4}, {"varies", "once"}}},
+                           {"unit_weight", {{"cov", 0.05}, {"varies", "once"}}},
+                           {"viscosity", {{"cov", 0.3}, {"varies", "once"}}}});
   const Strength soil = soil_of(c, 2);
   EXPECT_TRUE(std::ranges::all_of(soil.properties.c, [&](double x) { return x == soil.properties.c.front(); }));
   EXPECT_NE(soil.properties.c.front(), 2e3);
@@ -77,8 +77,8 @@ TEST(Properties, OnceIsOneValueWithTheBitsOfThatValue) {
 }
 
 TEST(Properties, SummarySaysWhatCameOut) {
-  const Case c = slope_with({{"friction", {{"mean_deg", 30}, {"cov", 0.1}}},
-                             {"cohesion", {{"marginal", "uniform"}, {"low_kPa", 1}, {"high_kPa", 4}}}});
+  const Case c = slope_of({{"friction", {{"mean_deg", 30}, {"cov", 0.1}}},
+                           {"cohesion", {{"marginal", "uniform"}, {"low_kPa", 1}, {"high_kPa", 4}}}});
   const FieldSummary summary = soil_of(c, 1).summary;
   ASSERT_EQ(summary.properties.size(), 2u);
   EXPECT_NEAR(summary.properties[0].mean, std::tan(M_PI / 6), 1e-12);
@@ -95,16 +95,16 @@ TEST(Properties, SummarySaysWhatCameOut) {
 
 // The mean takes the place of the material's value for all that is said before a run, the median does not.
 TEST(Properties, AStatedMeanStandsForTheMaterial) {
-  EXPECT_DOUBLE_EQ(slope_with({{"cohesion", {{"mean_kPa", 7}, {"cov", 0.3}}}}).model.materials.front().c, 7e3);
-  EXPECT_DOUBLE_EQ(slope_with({{"cohesion", {{"cov", 0.3}}}}).model.materials.front().c, 2e3);
-  EXPECT_DOUBLE_EQ(slope_with({{"cohesion", {{"log_stdev", 0.3}}}}).model.materials.front().c, 2e3);
-  EXPECT_NEAR(slope_with({{"unit_weight", {{"mean_kN_m3", 19.62}, {"cov", 0.1}}}}).model.materials.front().rho0, 2000,
+  EXPECT_DOUBLE_EQ(slope_of({{"cohesion", {{"mean_kPa", 7}, {"cov", 0.3}}}}).model.materials.front().c, 7e3);
+  EXPECT_DOUBLE_EQ(slope_of({{"cohesion", {{"cov", 0.3}}}}).model.materials.front().c, 2e3);
+  EXPECT_DOUBLE_EQ(slope_of({{"cohesion", {{"log_stdev", 0.3}}}}).model.materials.front().c, 2e3);
+  EXPECT_NEAR(slope_of({{"unit_weight", {{"mean_kN_m3", 19.62}, {"cov", 0.1}}}}).model.materials.front().rho0, 2000,
               1e-9);
 }
 
 /// Mean over four realizations of the front of 99 % of the mass after 3 s [m].
 double mean_front(const Json& properties) {
-  const Case c = slope_with(properties);
+  const Case c = slope_of(properties);
   const ParticlePlan plan = plan_particles(c.model);
   double sum = 0.0;
   for (int k = 0; k < 4; ++k) {
@@ -130,7 +130,7 @@ TEST(Properties, EachActsInItsDirection) {
 
 // A density that varies in space: the mass is that of the particles, and is compared with outlines of the same density.
 TEST(Properties, MassAndStepFollowTheDensityOfEachParticle) {
-  const Case c = slope_with({{"unit_weight", {{"cov", 0.1}}}});
+  const Case c = slope_of({{"unit_weight", {{"cov", 0.1}}}});
   const ParticlePlan plan = plan_particles(c.model);
   const Strength soil = strength(c.model, c.field, c.study, plan, {.seed = 3, .realization = 1});
   ASSERT_EQ(soil.properties.rho0.size(), plan.soil.size());
@@ -150,13 +150,13 @@ TEST(Properties, MassAndStepFollowTheDensityOfEachParticle) {
 // Given coefficients are used as they are, and their number is checked against all properties.
 TEST(Properties, GivenCoefficients) {
   const Json two = {{"friction", {{"cov", 0.1}}}, {"cohesion", {{"cov", 0.3}, {"varies", "once"}}}};
-  const Case c = slope_with(two, {"random_field.terms=2", "random_field.xi=[0.5,-1,2]"});
+  const Case c = slope_of(two, {"random_field.terms=2", "random_field.xi=[0.5,-1,2]"});
   const Strength soil = soil_of(c, std::nullopt);
   EXPECT_EQ(soil.xi, (std::vector<double>{0.5, -1, 2}));
   const double sigma = std::sqrt(std::log1p(0.09));
   EXPECT_NEAR(soil.properties.c.front(), 2e3 * std::exp(2 * sigma - sigma * sigma / 2), 1e-9);
   try {
-    slope_with(two, {"random_field.terms=2", "random_field.xi=[0.5,-1]"});
+    slope_of(two, {"random_field.terms=2", "random_field.xi=[0.5,-1]"});
     ADD_FAILURE();
   } catch (const ConfigError& e) {
     EXPECT_EQ(e.faults.front().pointer, "/random_field/xi");
@@ -167,7 +167,7 @@ TEST(Properties, GivenCoefficients) {
 // Without a field in space there is no correlation length to state, and nothing that it must resolve.
 TEST(Properties, NumbersAloneNeedNoCorrelationLength) {
   const Json once = {{"friction", {{"cov", 0.1}, {"varies", "once"}}}};
-  const Case c = slope_with(once, {"random_field.correlation_length_m=null"});
+  const Case c = slope_of(once, {"random_field.correlation_length_m=null"});
   EXPECT_EQ(soil_of(c, 0).summary.terms, 1);
   EXPECT_EQ(soil_of(c, 0).summary.captured_variance, 1.0);
 }

@@ -6,15 +6,18 @@
 
 #include "case/load.hpp"
 #include "math/angle.hpp"
-#include "particles/geometry.hpp"
+#include "particle_nearest.hpp"
+#include "run/property_draw.hpp"
 #include "run/realization.hpp"
 #include "support/error.hpp"
 
 namespace talus {
 namespace {
 
+using test::particle_nearest;
+
 /// A slope with random friction and cohesion; `field` and `properties` are merged into the case.
-Case slope(const Json& field, const Json& properties = Json::object()) {
+Case slope_with_data(const Json& field, const Json& properties = Json::object()) {
   Json document = {
       {"title", "slope"},
       {"particle_spacing_m", 0.5},
@@ -31,19 +34,13 @@ Case slope(const Json& field, const Json& properties = Json::object()) {
   return load_case(document, "").value;
 }
 
-Strength soil_of(const Case& c, std::optional<std::int64_t> realization) {
+Strength conditioned_soil(const Case& c, std::optional<std::int64_t> realization) {
   return strength(c.model, c.field, c.study, plan_particles(c.model), {.seed = 5, .realization = realization});
-}
-
-std::size_t particle_nearest(const Case& c, Vec2 x) {
-  const ParticlePlan plan = plan_particles(c.model);
-  return static_cast<std::size_t>(
-      std::ranges::min_element(plan.soil, {}, [&](const SoilPoint& p) { return norm2(p.x - x); }) - plan.soil.begin());
 }
 
 // Exact data on friction (in either place) and on cohesion, some at one point, are met by every realization.
 TEST(PropertyDataOfACase, RealizationsMeetExactData) {
-  const Case plain = slope(Json::object());
+  const Case plain = slope_with_data(Json::object());
   const ParticlePlan plan = plan_particles(plain.model);
   const std::size_t one = particle_nearest(plain, {2, 5}), other = particle_nearest(plain, {6, 3});
   const Vec2 a = plan.soil[one].x, b = plan.soil[other].x;
@@ -57,8 +54,8 @@ TEST(PropertyDataOfACase, RealizationsMeetExactData) {
         Json{{"data", angles}, {"trend_deg_per_m", 1.0}, {"covariance", "matern_5_2"}, {"dip_deg", 20}},
         Json{{"data", angles}, {"sampler", "circulant_embedding"}, {"covariance", "squared_exponential"}}, Json()})
     for (const std::int64_t realization : {0, 1}) {
-      const Case c = field.is_null() ? slope(Json::object(), both) : slope(field, cohesion);
-      const SoilProperties soil = soil_of(c, realization).properties;
+      const Case c = field.is_null() ? slope_with_data(Json::object(), both) : slope_with_data(field, cohesion);
+      const SoilProperties soil = conditioned_soil(c, realization).properties;
       EXPECT_NEAR(friction_angle_deg(soil.tan_phi[one]), 29.0, 1e-6) << field.dump();
       EXPECT_NEAR(soil.c[one], 8e3, 1e-3) << field.dump();
       EXPECT_NEAR(soil.c[other], 3e3, 1e-3) << field.dump();
@@ -68,10 +65,10 @@ TEST(PropertyDataOfACase, RealizationsMeetExactData) {
 // The trend raises the median of every distribution by so many degrees for every metre; cohesion has none.
 TEST(PropertyDataOfACase, TheTrendRaisesTheMedianOfFriction) {
   for (const char* marginal : {"lognormal", "normal"}) {
-    const Case c = slope({{"trend_deg_per_m", 1.5}}, {{"friction", {{"marginal", marginal}}}});
-    const Case level = slope(Json::object(), {{"friction", {{"marginal", marginal}}}});
+    const Case c = slope_with_data({{"trend_deg_per_m", 1.5}}, {{"friction", {{"marginal", marginal}}}});
+    const Case level = slope_with_data(Json::object(), {{"friction", {{"marginal", marginal}}}});
     const ParticlePlan plan = plan_particles(c.model);
-    const Strength raised = soil_of(c, std::nullopt), flat = soil_of(level, std::nullopt);
+    const Strength raised = conditioned_soil(c, std::nullopt), flat = conditioned_soil(level, std::nullopt);
     for (std::size_t i = 0; i < plan.soil.size(); ++i) {
       const double depth = depth_below_surface(c.model.slide, plan.soil[i].x);
       EXPECT_NEAR(friction_angle_deg(raised.properties.tan_phi[i]),
@@ -89,14 +86,18 @@ TEST(PropertyDataOfACase, TheTrendRaisesTheMedianOfFriction) {
 // standard errors of a median (1.25 s/sqrt(n)) and 1 % of the first-order formula, standard deviation within 12 %, of
 // which 5/sqrt(2 n) = 9 % is sampling error.
 TEST(PropertyDataOfACase, SpreadIsThatOfTheRealizations) {
-  const Case c = slope({{"data", {{4.0, 4.0, 29.0, 0.5}}}, {"covariance", "matern_3_2"}, {"terms", 40}},
-                       {{"cohesion", {{"cov", 0.2}, {"data", {{4.0, 4.0, 7.0, 0.3}}}}}});
+  const Case c = slope_with_data({{"data", {{4.0, 4.0, 29.0, 0.5}}}, {"covariance", "matern_3_2"}, {"terms", 40}},
+                                 {{"cohesion", {{"cov", 0.2}, {"data", {{4.0, 4.0, 7.0, 0.3}}}}}});
   const ParticlePlan plan = plan_particles(c.model);
   const std::size_t places[] = {particle_nearest(c, {4, 4}), particle_nearest(c, {9.5, 0.3})};
+  const PropertyFields fields = property_fields(c.model, *c.field);  // set up once: 40 modes take a while
+  const SoilProperties materials = conditioned_soil(c, std::nullopt).properties;
   constexpr std::size_t n = 1500;
   std::vector<double> drawn[2][2];
   for (std::size_t k = 0; k < n; ++k) {
-    const SoilProperties soil = soil_of(c, static_cast<std::int64_t>(k)).properties;
+    SoilProperties soil = materials;
+    Model model = c.model;
+    draw_properties(fields, plan, fields.draw(5, k), soil, model);
     for (std::size_t p = 0; p < 2; ++p) {
       drawn[0][p].push_back(std::atan(soil.tan_phi[places[p]]));
       drawn[1][p].push_back(soil.c[places[p]]);
@@ -125,16 +126,17 @@ TEST(PropertyDataOfACase, SpreadIsThatOfTheRealizations) {
 
 // Coefficients of the data follow those of the properties; the summary counts them.
 TEST(PropertyDataOfACase, CoefficientsOfTheData) {
-  const Case c = slope({{"data", {{4.0, 4.0, 29.0, 0.5}}}, {"terms", 7}}, {{"cohesion", {{"data", {{4, 4, 7, 1}}}}}});
-  const Strength soil = soil_of(c, 2);
+  const Case c =
+      slope_with_data({{"data", {{4.0, 4.0, 29.0, 0.5}}}, {"terms", 7}}, {{"cohesion", {{"data", {{4, 4, 7, 1}}}}}});
+  const Strength soil = conditioned_soil(c, 2);
   EXPECT_EQ(soil.summary.terms, 16);
   ASSERT_EQ(soil.xi.size(), 16u);
   Case given = c;
   given.field->xi = soil.xi;
-  EXPECT_EQ(soil_of(given, std::nullopt).properties.c, soil.properties.c);
+  EXPECT_EQ(conditioned_soil(given, std::nullopt).properties.c, soil.properties.c);
   EXPECT_NE(soil.xi[14], 0.0);
   given.field->xi.pop_back();
-  EXPECT_THROW(soil_of(given, std::nullopt), ConfigError);
+  EXPECT_THROW(conditioned_soil(given, std::nullopt), ConfigError);
 }
 
 }  // namespace

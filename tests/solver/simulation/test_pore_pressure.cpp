@@ -13,7 +13,7 @@ namespace {
 
 using namespace testing_support;
 
-constexpr Material sand{"sand", 2000, 40 * degree, 0, 0};
+const Material sand{"sand", 2000, 40 * degree, 0, 0};
 
 Material with_r_u(double r_u) {
   Material m = sand;
