@@ -11,7 +11,7 @@ test=(libgtest-dev libbenchmark-dev libvalijson-dev python3-venv ca-certificates
 container=(debootstrap buildah netavark iproute2 systemd-container)
 . /etc/os-release
 llvm=$([ "${VERSION_ID%%.*}" = 12 ] && echo 16 || echo 19)  # Debian 12 and 13 share no version
-tsan=("clang-$llvm" "libclang-rt-$llvm-dev" "libomp-$llvm-dev")
+tsan=("clang-$llvm" "llvm-$llvm" "libclang-rt-$llvm-dev" "libomp-$llvm-dev")
 
 wanted=()
 for group in "${@:-build}"; do
