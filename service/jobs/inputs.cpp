@@ -77,7 +77,11 @@ void refuse_files(const Json& value, const std::string& pointer, Faults& faults)
   if (value.is_object()) {
     for (const auto& [key, member] : value.items()) {
       const std::string place = pointer_to(pointer, key);
-      if (key.ends_with("_csv")) faults.add(place, "names a file; over HTTP give the vertices themselves");
+      if (key == "data_csv")
+        faults.add(place, "names a file; over HTTP give the data themselves, as data: [[x, y, value, error], ...]");
+      else if (key.ends_with("_csv"))
+        faults.add(place,
+                   "names a file; over HTTP give the vertices themselves, as " + key.substr(0, key.size() - 3) + "m");
       refuse_files(member, place, faults);
     }
   } else if (value.is_array()) {

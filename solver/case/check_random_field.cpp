@@ -66,7 +66,7 @@ std::vector<double> surface_angles(const Case& c) {
     return angles;
   }
   for (const Material& m : c.model.materials)
-    angles.push_back(f.mean ? std::atan(*f.mean) : f.mu ? std::atan(std::exp(*f.mu)) : m.phi);
+    if (!m.undrained) angles.push_back(f.mean ? std::atan(*f.mean) : f.mu ? std::atan(std::exp(*f.mu)) : m.phi);
   return angles;
 }
 
@@ -86,6 +86,17 @@ void check_trend(const Case& c, Faults& faults) {
                         " deg at the surface; it must stay between 0 and " + rounded(degrees(most_trend_angle)) +
                         " deg");
     return;
+  }
+}
+
+/// Friction data in soil that has friction.
+void check_friction_data(const Case& c, const FieldData& data, Faults& faults) {
+  for (std::size_t k = 0; k < c.field->data.size(); ++k) {
+    const FieldDatum& datum = c.field->data[k];
+    const Material& m = c.model.materials[static_cast<std::size_t>(material_at(c.model.slide, datum.x))];
+    if (datum.property == Property::friction && m.undrained)
+      faults.add(data.places[k], "is a friction angle in the material " + in_quotes(m.name) +
+                                     ", which is undrained and has none; leave the datum out");
   }
 }
 
@@ -137,8 +148,23 @@ void check_field(const Case& c, const SourceLocations& origins, Faults& faults) 
   const std::size_t before = faults.size();
   check_field_data(origins.field_data, f.domain.value_or(box), faults);
   check_trend(c, faults);
+  check_friction_data(c, origins.field_data, faults);
   if (!f.properties.empty() && !f.data.empty() && faults.size() == before)
     check_property_data(c, origins.field_data, faults);
+}
+
+void warn_of_undrained_layers(const Case& c, std::vector<Fault>& warnings) {
+  const FieldSpec& f = *c.field;
+  const auto friction = std::ranges::find(f.properties, Property::friction, &PropertySpec::property);
+  if (!f.properties.empty() && friction == f.properties.end()) return;
+  std::string names;
+  for (const FieldMaterial& m : field_materials(c.model)) {
+    const bool meant = f.properties.empty() || friction->applies_to(m.name);
+    if (m.used && m.undrained && meant) names += (names.empty() ? "" : ", ") + in_quotes(m.name);
+  }
+  if (!names.empty())
+    warnings.push_back({f.properties.empty() ? "/random_field" : property_pointer(Property::friction),
+                        "varies friction in the drained materials only; undrained, without friction: " + names});
 }
 
 }  // namespace talus

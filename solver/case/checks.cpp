@@ -203,6 +203,7 @@ std::vector<Fault> find_warnings(const Case& c) {
   warn_of_a_slide_in_the_air(model, warnings);
   warn_of_thin_front(model, warnings);
   if (c.field) warn_of_unused_keys(*c.field, warnings);
+  if (c.field) warn_of_undrained_layers(c, warnings);
   warn_of_unused_water(model, warnings);
   if (model.numerics.precision == Precision::full)
     warnings.push_back(

@@ -14,14 +14,23 @@ std::vector<FieldMaterial> field_materials(const Model& model) {
     const Material& m = model.materials[k];
     materials.push_back({.name = m.name,
                          .values = {std::tan(m.phi), m.c, m.rho0, m.eta},
-                         .used = std::ranges::count(model.slide, static_cast<int>(k), &SlidePart::material) > 0});
+                         .used = std::ranges::count(model.slide, static_cast<int>(k), &SlidePart::material) > 0,
+                         .undrained = m.undrained});
   }
   return materials;
 }
 
-double trend_factor(const Model& model, double slope, double median_tan_phi, Vec2 point) {
-  if (slope == 0.0) return 1.0;
-  return std::exp(log_trend(median_tan_phi, slope, depth_below_surface(model.slide, point)));
+DepthChange depth_change(const Model& model, double slope, const PropertyLaws& laws, std::size_t k,
+                         std::size_t material, Vec2 point) {
+  const PropertySpec& p = laws.spec(k);
+  const Marginal& marginal = laws.marginal(k, material);
+  if (p.property == Property::friction && slope != 0.0)
+    return {.factor = std::exp(log_trend(marginal.value(0.0), slope, depth_below_surface(model.slide, point)))};
+  const double gradient = model.materials[material].c_gradient;
+  if (p.property == Property::cohesion && gradient > 0.0)
+    return {.added = gradient * depth_below_surface(model.slide, point),
+            .at_surface = p.log_stdev ? marginal.value(0.0) : marginal.mean};
+  return {};
 }
 
 PropertyDatum property_datum(const Model& model, const FieldSpec& field, const PropertyLaws& laws,
@@ -32,12 +41,13 @@ PropertyDatum property_datum(const Model& model, const FieldSpec& field, const P
                       .x = given.x,
                       .value = given.value,
                       .error = given.error};
-  if (given.property != Property::friction) return datum;
-  const double t = std::tan(given.value);  // d tan(phi)/d phi = 1 + tan(phi)^2
-  const double median = laws.marginal(datum.property, datum.material).value(0.0);
-  const double trend = trend_factor(model, field.trend, median, given.x);
-  datum.value = t / trend;
-  datum.error = given.error * (1.0 + t * t) / trend;
+  if (given.property == Property::friction) {
+    datum.value = std::tan(given.value);
+    datum.error = given.error * (1.0 + datum.value * datum.value);  // d tan(phi)/d phi = 1 + tan(phi)^2
+  }
+  const double factor = depth_change(model, field.trend, laws, datum.property, datum.material, given.x).of(1.0);
+  datum.value /= factor;
+  datum.error /= factor;
   return datum;
 }
 

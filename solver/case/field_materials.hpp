@@ -11,12 +11,24 @@ namespace talus {
 /// What the random field needs to know of the materials, in their order.
 std::vector<FieldMaterial> field_materials(const Model& model);
 
-/// What the trend multiplies tan(phi) with at a point of a material: tan(phi + slope depth) / tan(phi), phi being the
-/// angle of the median at the surface.
-/// @param slope  FieldSpec::trend [rad/m]
-double trend_factor(const Model& model, double slope, double median_tan_phi, Vec2 point);
+/// What depth makes of a value that is drawn from the distribution at the ground surface: its coefficient of variation
+/// stays.
+struct DepthChange {
+  double factor = 1.0;      ///< of friction with a trend: tan(phi + slope depth) / tan(phi), phi that of the median
+  double added = 0.0;       ///< of an undrained strength: gradient times depth [Pa]
+  double at_surface = 0.0;  ///< of an undrained strength: the one at the surface that `added` belongs to [Pa]
 
-/// A datum of a field with properties, as it is without the trend.
+  /// A constant strength has exactly at_surface + added.
+  double of(double x) const { return factor * x + (at_surface > 0.0 ? added * (x / at_surface) : added); }
+};
+
+/// Of the k-th property at a point of a material that it applies to: a trend of friction, the gradient of an undrained
+/// strength. Both are those of the mean, or of the median where the distribution is given by log_stdev.
+/// @param slope  FieldSpec::trend [rad/m]
+DepthChange depth_change(const Model& model, double slope, const PropertyLaws& laws, std::size_t k,
+                         std::size_t material, Vec2 point);
+
+/// A datum of a field with properties, as it would be at the ground surface.
 /// @param given  on one of the properties, in soil of the slide
 PropertyDatum property_datum(const Model& model, const FieldSpec& field, const PropertyLaws& laws,
                              const FieldDatum& given);

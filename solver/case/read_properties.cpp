@@ -18,9 +18,8 @@ constexpr Names<MarginalKind> marginals[] = {{"lognormal", MarginalKind::lognorm
 constexpr Names<Varies> variations[] = {{"in_space", Varies::in_space}, {"once", Varies::once}};
 constexpr Names<Layers> layers[] = {{"one_field", Layers::one_field}, {"independent", Layers::independent}};
 
-/// Names that are kept for properties which the soil does not have yet.
-constexpr std::string_view later[] = {"undrained_strength", "residual_friction", "residual_cohesion",
-                                      "pore_pressure_ratio"};
+/// Properties of the soil that cannot be random.
+constexpr std::string_view only_constant[] = {"residual_friction", "residual_cohesion", "pore_pressure_ratio"};
 
 constexpr Quantity cov_range{"", 0.0, 10.0};
 constexpr Quantity log_stdev_range{"", 0.0, 5.0};
@@ -155,8 +154,11 @@ void read_all(ObjectReader& in, FieldSpec& spec, const std::filesystem::path& di
       PropertyReader(section, property, directory, data).read();
     });
   }
-  for (const std::string_view name : later)
-    if (in.find(name)) in.fault(name, "is not available yet: the soil model does not have this property");
+  for (const std::string_view name : only_constant)
+    if (in.find(name)) in.fault(name, "cannot be random; a material states it as a constant (softening, r_u)");
+  if (in.find("undrained_strength"))
+    in.fault("undrained_strength",
+             "is called cohesion here: in undrained materials cohesion is the undrained strength");
   if (spec.properties.empty())
     in.fault("", "states no property; give one of friction, cohesion, unit_weight, viscosity");
 }

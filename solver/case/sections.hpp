@@ -132,6 +132,8 @@ void check_field_choices(const Case& c, Faults& faults);
 /// keeps in range.
 /// @param c  with a field
 void check_field(const Case& c, const SourceLocations& origins, Faults& faults);
+/// Undrained materials, which a field of friction leaves out. @param c  with a field
+void warn_of_undrained_layers(const Case& c, std::vector<Fault>& warnings);
 
 // check_water.cpp
 /// A phreatic line that covers the slide and does not lie above the ground.

@@ -33,7 +33,7 @@ struct FieldOptions {
   std::optional<std::int64_t> realization;
   std::optional<std::uint64_t> seed;
   bool spread = false;
-  std::string property = "friction";  ///< key of property_names
+  std::string property;  ///< key of property_names; empty: the first that varies
   bool json = false;
 };
 
@@ -186,7 +186,8 @@ Exit field(const FieldOptions& options) {
   const RunIdentity identity{seed ? *seed : random_seed(), options.realization};
   if (options.spread && !problem.field)
     throw ConfigError("/random_field", "is missing: the case has no random field whose spread could be drawn");
-  const FieldOnParticles on_particles = field_on(problem, identity, property_of(options.property), options.spread);
+  const Property shown = options.property.empty() ? first_random(problem) : property_of(options.property);
+  const FieldOnParticles on_particles = field_on(problem, identity, shown, options.spread);
   const FieldSummary& of = on_particles.strength.summary;
   std::string source = "Talus " + version;
   if (identity.realization) source += "  ·  seed " + std::to_string(identity.seed);
@@ -236,9 +237,9 @@ void add_field(CLI::App& app, Action& action) {
                  "Also the median and the standard deviation over realizations, given the data: panels, or columns");
   std::set<std::string> names;
   for (const PropertyName& name : property_names) names.emplace(name.key);
-  verb->add_option("--property", options->property, "Random property that a picture shows; tables have all of them")
-      ->check(CLI::IsMember(names))
-      ->capture_default_str();
+  verb->add_option("--property", options->property,
+                   "Random property that a picture shows, default: the first that varies; tables have all of them")
+      ->check(CLI::IsMember(names));
   add_overrides(*verb, options->overrides);
   verb->add_flag("--json", options->json, "Print a summary with the coefficients as JSON");
   set_footer(*verb, {exit_text::bad_case, exit_text::io},

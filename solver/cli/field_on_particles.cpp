@@ -35,6 +35,15 @@ Property property_of(std::string_view key) {
   return static_cast<Property>(std::ranges::find(property_names, key, &PropertyName::key) - property_names.begin());
 }
 
+Property first_random(const Case& problem) {
+  if (!problem.field) return Property::friction;
+  const auto& properties = problem.field->properties;
+  const auto first = std::ranges::find_if(properties, [](const PropertySpec& p) {
+    return p.random() && p.cov.value_or(1.0) > 0.0 && p.stdev.value_or(1.0) > 0.0 && p.log_stdev.value_or(1.0) > 0.0;
+  });
+  return first == properties.end() ? Property::friction : first->property;
+}
+
 std::vector<double> displayed(std::vector<double> values, Property property) {
   for (double& value : values)
     value = property == Property::friction ? friction_angle_deg(value) : value / name_of(property).factor;

@@ -29,6 +29,9 @@ struct FieldOnParticles {
 /// The property of a key of property_names, which is known.
 Property property_of(std::string_view key);
 
+/// The first property that realizations differ in; friction where none does.
+Property first_random(const Case& problem);
+
 /// @param shown   the property of pictures
 /// @param spread  also median and standard deviation over realizations
 /// @throws ConfigError when `shown` is not random in the case, or the field cannot be built

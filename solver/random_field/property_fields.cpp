@@ -46,7 +46,7 @@ std::vector<PropertyBlock> property_blocks(const FieldSpec& spec, std::span<cons
     if (p.layers == Layers::one_field) add(std::nullopt);
     if (p.layers == Layers::independent)
       for (std::size_t m = 0; m < materials.size(); ++m)
-        if (materials[m].used && p.applies_to(materials[m].name)) add(m);
+        if (materials[m].used && materials[m].takes(p)) add(m);
   }
   return blocks;
 }

@@ -51,7 +51,7 @@ PropertyLaws::PropertyLaws(const FieldSpec& spec, std::span<const FieldMaterial>
 void PropertyLaws::make_marginals(std::span<const FieldMaterial> materials, std::vector<Fault>& faults) {
   for (const FieldMaterial& material : materials)
     for (const PropertySpec& p : specs_) {
-      applies_.push_back(p.applies_to(material.name));
+      applies_.push_back(material.takes(p));
       Marginal& marginal = marginals_.emplace_back();
       if (!applies_.back() || !material.used) continue;
       try {
@@ -62,8 +62,16 @@ void PropertyLaws::make_marginals(std::span<const FieldMaterial> materials, std:
       }
     }
   for (const PropertySpec& p : specs_) {
-    if (std::ranges::any_of(materials, [&](const FieldMaterial& m) { return m.used && p.applies_to(m.name); }))
+    if (std::ranges::any_of(materials, [&](const FieldMaterial& m) { return m.used && m.takes(p); })) continue;
+    if (std::ranges::any_of(materials, [&](const FieldMaterial& m) { return m.used && p.applies_to(m.name); })) {
+      faults.push_back(
+          {property_pointer(p.property),
+           "varies friction in undrained soil, which has none (phi = 0): " +
+               (p.material.empty() ? "every material is undrained" : in_quotes(p.material) + " is undrained") +
+               "; remove it, or vary cohesion, which is the undrained "
+               "strength there"});
       continue;
+    }
     std::string names;
     for (const FieldMaterial& m : materials)
       if (m.used) names += (names.empty() ? "" : ", ") + m.name;

@@ -17,6 +17,12 @@ struct FieldMaterial {
   std::string name;
   PropertyValues values{};  ///< what it says without a random field
   bool used = true;         ///< some soil is made of it
+  bool undrained = false;   ///< its cohesion is the undrained strength, and it has no friction
+
+  /// Whether a property is random, or constant, in this material.
+  bool takes(const PropertySpec& p) const {
+    return p.applies_to(name) && !(undrained && p.property == Property::friction);
+  }
 };
 
 /// A measured value of a random property, in the units of PropertyValues.

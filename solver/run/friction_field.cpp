@@ -53,12 +53,18 @@ std::vector<double> log_medians_at(const Model& model, const FieldSpec& spec, co
   return mu;
 }
 
+void clear_undrained(const Model& model, const ParticlePlan& plan, std::vector<double>& tan_phi) {
+  for (std::size_t i = 0; i < tan_phi.size(); ++i)
+    if (model.materials[static_cast<std::size_t>(plan.soil[i].material)].undrained) tan_phi[i] = 0.0;
+}
+
 FieldSpread friction_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan) {
   std::vector<Vec2> points;
   for (const SoilPoint& point : plan.soil) points.push_back(point.x);
   const RandomField field = make_field(model, spec);
   const std::vector<double> mu = log_medians_at(model, spec, field, points, material_properties(model, plan).tan_phi);
   FieldSpread spread{lognormal(field.gaussian(points, std::vector<double>(field.terms(), 0.0)), mu, spec.sigma), {}};
+  clear_undrained(model, plan, spread.median);
   const std::vector<double> variance = field.conditional_variance(points);
   for (std::size_t i = 0; i < points.size(); ++i)
     spread.stdev.push_back(std::abs(spec.sigma) * std::sqrt(variance[i]) * std::sin(2 * std::atan(spread.median[i])) /

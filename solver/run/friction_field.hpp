@@ -21,6 +21,10 @@ RandomField make_field(const Model& model, const FieldSpec& spec);
 std::vector<double> log_medians_at(const Model& model, const FieldSpec& spec, const RandomField& field,
                                    std::span<const Vec2> points, std::span<const double> tan_phi);
 
+/// Undrained soil has no friction: its particles keep tan(phi) = 0, whatever the field.
+/// @param tan_phi  of the particles of `plan` [-]
+void clear_undrained(const Model& model, const ParticlePlan& plan, std::vector<double>& tan_phi);
+
 /// Median and standard deviation of the friction angle at the particles: the latter to first order, sigma sqrt(V)
 /// sin(2 phi) / 2.
 FieldSpread friction_spread(const Model& model, const FieldSpec& spec, const ParticlePlan& plan);

@@ -20,18 +20,16 @@ std::vector<Vec2> points_of(const ParticlePlan& plan) {
   return points;
 }
 
-/// What the trend multiplies the k-th property with at each particle; empty without one.
-std::vector<double> trend_factors(const PropertyFields& fields, const Model& model, const ParticlePlan& plan,
-                                  std::size_t k) {
-  std::vector<double> factors;
-  if (fields.trend() == 0.0 || fields.laws().spec(k).property != Property::friction) return factors;
+/// What depth changes of the k-th property at each particle.
+std::vector<DepthChange> depth_changes(const PropertyFields& fields, const Model& model, const ParticlePlan& plan,
+                                       std::size_t k) {
+  std::vector<DepthChange> changes;
   for (const SoilPoint& point : plan.soil) {
     const auto m = static_cast<std::size_t>(point.material);
-    const bool applies = fields.laws().applies(k, m);
-    factors.push_back(applies ? trend_factor(model, fields.trend(), fields.laws().marginal(k, m).value(0.0), point.x)
-                              : 1.0);
+    changes.push_back(fields.laws().applies(k, m) ? depth_change(model, fields.trend(), fields.laws(), k, m, point.x)
+                                                  : DepthChange{});
   }
-  return factors;
+  return changes;
 }
 
 /// Mean and coefficient of variation of a mixture of distributions. Deviations from the first mean are summed, so that
@@ -83,12 +81,12 @@ FieldSummary summary_of(const PropertyFields& fields, const Model& model, const 
   const std::vector<std::size_t> materials = materials_of(plan);
   for (std::size_t k = 0; k < fields.laws().size(); ++k) {
     const Property property = fields.laws().spec(k).property;
-    const std::vector<double> trend = trend_factors(fields, model, plan, k);
+    const std::vector<DepthChange> depth = depth_changes(fields, model, plan, k);
     Mixture all;
     for (std::size_t i = 0; i < materials.size(); ++i) {
       const std::size_t m = materials[i];
-      const double factor = trend.empty() ? 1.0 : trend[i];
-      if (fields.laws().applies(k, m)) all.add(factor * fields.drawn(k, m).mean, factor * fields.drawn(k, m).stdev);
+      if (!fields.laws().applies(k, m)) continue;
+      all.add(depth[i].of(fields.drawn(k, m).mean), depth[i].of(1.0) * fields.drawn(k, m).stdev);
     }
     const PropertyName& name = name_of(property);
     summary.properties.push_back({.name = std::string(name.key), .mean = all.mean() / name.factor, .cov = all.cov()});
@@ -103,16 +101,16 @@ FieldSpread property_spread(const PropertyFields& fields, const Model& model, co
   const std::vector<FieldMaterial> stated = field_materials(model);
   FieldSpread spread;
   for (const std::size_t m : materials) spread.median.push_back(stated[m].values[index_of(property)]);
+  if (property == Property::cohesion) spread.median = material_properties(model, plan).c;  // with depth
   spread.stdev.assign(materials.size(), 0.0);
   for (std::size_t k = 0; k < fields.laws().size(); ++k) {
     if (fields.laws().spec(k).property != property) continue;
     const PropertyFields::Spread drawn = fields.spread(k, points_of(plan), materials);
-    const std::vector<double> trend = trend_factors(fields, model, plan, k);
+    const std::vector<DepthChange> depth = depth_changes(fields, model, plan, k);
     for (std::size_t i = 0; i < materials.size(); ++i) {
       if (!fields.laws().applies(k, materials[i])) continue;
-      const double factor = trend.empty() ? 1.0 : trend[i];
-      spread.median[i] = factor * drawn.median[i];
-      spread.stdev[i] = factor * drawn.stdev[i];
+      spread.median[i] = depth[i].of(drawn.median[i]);
+      spread.stdev[i] = depth[i].of(1.0) * drawn.stdev[i];
     }
   }
   if (property == Property::friction)  // d phi / d tan(phi) = 1/(1 + tan(phi)^2)
@@ -128,8 +126,8 @@ FieldSummary draw_properties(const PropertyFields& fields, const ParticlePlan& p
   FieldSummary summary = summary_of(fields, model, plan);
   for (std::size_t k = 0; k < values.size(); ++k) {
     const PropertySpec& spec = fields.laws().spec(k);
-    const std::vector<double> trend = trend_factors(fields, model, plan, k);
-    for (std::size_t i = 0; i < trend.size(); ++i) values[k][i] *= trend[i];
+    const std::vector<DepthChange> depth = depth_changes(fields, model, plan, k);
+    for (std::size_t i = 0; i < depth.size(); ++i) values[k][i] = depth[i].of(values[k][i]);
     const bool by_particle = in_the_loops(spec.property) || spec.in_space();
     std::vector<double>* to = by_particle ? &array_of(spec.property, properties, model, plan) : nullptr;
     Mixture run;

@@ -43,6 +43,7 @@ void draw_friction(const FieldSpec& spec, const StudySpec& study, const Particle
   result.xi = draw(random, spec, study, identity);
   const std::vector<double> mu = log_medians_at(result.model, spec, random, points, tan_phi);
   tan_phi = lognormal(random.gaussian(points, result.xi), mu, spec.sigma);
+  clear_undrained(result.model, plan, tan_phi);
   result.summary = friction_summary(spec, random);
 }
 

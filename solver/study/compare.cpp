@@ -92,6 +92,20 @@ Json target_json(const std::vector<Pair>& pairs, const std::string& name, std::s
   return json;
 }
 
+bool has_independent_layers(const Json& field) {
+  const Json properties = field.value("properties", Json::object());
+  return std::ranges::any_of(properties, [](const Json& of) { return of.value("layers", "") == "independent"; });
+}
+
+/// "upper, lower": the materials of a resolved case in the order that numbers their draws.
+std::string layer_names(const Json& document) {
+  const Json none = Json::object();
+  std::string names = document.value("material", none).value("name", "");
+  for (const Json& outline : document.value("slide", none).value("outlines", Json::array()))
+    if (outline.contains("material")) names += ", " + outline["material"].value("name", std::string());
+  return names;
+}
+
 void check_draws(const Tables& a, const Tables& b, const Json& case_a, const Json& case_b) {
   std::vector<Fault> faults;
   const auto differ = [&](const std::string& what, const std::string& of_a, const std::string& of_b) {
@@ -113,10 +127,18 @@ void check_draws(const Tables& a, const Tables& b, const Json& case_a, const Jso
     faults.push_back({key, "differs: the studies cannot be paired, since their draws differ"});
   };
   for (const std::string& key : differences(field_a, field_b)) refuse("/random_field" + key);
-  if (!field_a.contains("domain_m") && field_a.value("sampler", "") != "circulant_embedding")
+  if (!field_a.contains("domain_m"))
     for (const std::string& key : differences(case_a.value("slide", none), case_b.value("slide", none)))
       if (key.find("/outline_m") != std::string::npos || key.find("_surface_m") != std::string::npos)
         refuse("/slide" + key);
+  if (field_a.value("nugget", 0.0) > 0.0)  // drawn at the places of the particles
+    for (const char* key : {"particle_spacing_m", "particle_placement", "particle_lattice"})
+      if (case_a.value(key, none) != case_b.value(key, none)) refuse("/" + std::string(key));
+  if (has_independent_layers(field_a) && layer_names(case_a) != layer_names(case_b))
+    faults.push_back({"/slide/outlines",
+                      "differs: the studies cannot be paired, since each layer has draws of its own, and the layers "
+                      "are " +
+                          layer_names(case_a) + " in the first and " + layer_names(case_b) + " in the second"});
   if (!faults.empty()) throw ConfigError(std::move(faults));
 }
 

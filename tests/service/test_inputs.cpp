@@ -50,6 +50,20 @@ TEST(StudyInputs, NoFileAndNoLink) {
   EXPECT_EQ(study_faults(R"({"case": {"href": "http://169.254.169.254/"}})"), "/inputs/case/href /inputs/case ");
 }
 
+TEST(StudyInputs, MessagesNameWhatStandsForTheFile) {
+  const Json request = Json::parse(R"({"case": {"terrain": {"bed_csv": "a"}, "random_field": {"data_csv": "b"}}})");
+  std::vector<std::string> messages;
+  try {
+    read_study_inputs(request);
+  } catch (const Refusal& e) {
+    for (const Fault& fault : e.faults) messages.push_back(fault.message);
+  }
+  ASSERT_EQ(messages.size(), 2u);
+  EXPECT_NE(messages[0].find("the vertices themselves, as bed_m"), std::string::npos) << messages[0];
+  EXPECT_NE(messages[1].find("the data themselves, as data: [[x, y, value, error], ...]"), std::string::npos)
+      << messages[1];
+}
+
 TEST(EchoInputs, EveryTypeIsChecked) {
   EXPECT_EQ(echo_faults(R"({"s": "a", "pause": 0.5, "a": [1, 2], "b": {"bbox": [1, 2, 3, 4]}, "o": {"value": {"k": 1}},
                             "m": {"value": "<a/>", "mediaType": "text/xml"}, "x": true})"),

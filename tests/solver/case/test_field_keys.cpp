@@ -1,6 +1,7 @@
 // Keys of random_field: covariance, lengths, data, trend, and the default of cell_average.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -75,6 +76,39 @@ TEST(FieldKeys, LengthsInOneFormOnly) {
 }
 
 // 4 spacings of 0.5 m; along the axes on which the field varies.
+// Undrained soil has no friction that could vary.
+TEST(FieldKeys, FrictionOfUndrainedSoilIsRefusedOrLeftOut) {
+  const auto of = [](Json field, bool mixed) {
+    Json document = test::with("/random_field", std::move(field));
+    document["material"] = {{"name", "clay"}, {"density_kg_m3", 1800}, {"undrained_strength_kPa", 10}};
+    if (!mixed) return document;
+    document["slide"]["outlines"] = Json::parse(R"([
+      {"outline_m": [[0, 5], [5, 2.5], [5, 8], [0, 8]]},
+      {"outline_m": [[5, 2.5], [10, 0], [12, 0], [5, 8]],
+       "material": {"name": "sand", "density_kg_m3": 2000, "friction_angle_deg": 30}}])");
+    return document;
+  };
+  const auto properties = [](const Json& stated) { return Json{{"correlation_length_m", 4}, {"properties", stated}}; };
+  const Json friction = properties({{"friction", {{"mean_deg", 20}, {"cov", 0.1}}}});
+  const auto first = [&](const Json& document) { return faults_of(document).at(0); };
+  EXPECT_NE(first(of(friction, false)).find("/random_field/properties/friction: varies friction in undrained soil, "),
+            std::string::npos);
+  EXPECT_NE(first(of(properties({{"friction", {{"mean_deg", 20}, {"cov", 0.1}, {"material", "clay"}}}}), true))
+                .find("(phi = 0): \"clay\" is undrained"),
+            std::string::npos);
+  EXPECT_NE(first(of(properties({{"undrained_strength", {{"cov", 0.1}}}}), false)).find("is called cohesion here"),
+            std::string::npos);
+  for (const Json& field : {friction, Json{{"correlation_length_m", 4}, {"log_stdev", 0.2}, {"log_mean", -0.8}}}) {
+    const LoadedCase loaded = test::load(of(field, true));
+    const auto left_out = [](const Fault& f) { return f.message.find("without friction: \"clay\"") != f.message.npos; };
+    EXPECT_EQ(std::ranges::count_if(loaded.warnings, left_out), 1) << field.dump();
+    Json with_datum = field;
+    with_datum["data"] = {{2.0, 6.0, 25.0, 1.0}};
+    EXPECT_NE(first(of(with_datum, true)).find("/random_field/data/0: is a friction angle in the material \"clay\""),
+              std::string::npos);
+  }
+}
+
 TEST(FieldKeys, AveragesOverCellsUnderFourSpacingsUnlessToldOtherwise) {
   const auto averages = [](Json keys) { return spec_of(field(std::move(keys))).cell_average; };
   EXPECT_FALSE(averages({{"correlation_length_m", 2}}));

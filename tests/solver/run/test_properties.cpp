@@ -102,6 +102,50 @@ TEST(Properties, AStatedMeanStandsForTheMaterial) {
               1e-9);
 }
 
+/// Clay below sand: undrained strength 6 kPa at the surface, 2 kPa more for every metre of depth.
+Case clay_and_sand(const Json& field) {
+  const Json document = {
+      {"title", "layers"},
+      {"particle_spacing_m", 0.5},
+      {"terrain", {{"bed_m", {{0, 4}, {8, 0}, {60, 0}}}}},
+      {"slide",
+       {{"outlines",
+         {{{"outline_m", {{0, 4}, {4, 2}, {4, 7}, {0, 7}}}},
+          {{"outline_m", {{4, 2}, {8, 0}, {10, 0}, {4, 7}}},
+           {"material",
+            {{"name", "clay"}, {"undrained_strength_kPa", 6}, {"undrained_strength_gradient_kPa_per_m", 2}}}}}}}},
+      {"material", {{"name", "sand"}, {"density_kg_m3", 2000}, {"friction_angle_deg", 25}, {"cohesion_kPa", 2}}},
+      {"time", {{"end_s", 3}}},
+      {"random_field", field}};
+  return load_case(document, "").value;
+}
+
+// A random strength keeps its gradient: each value is that at the surface, and grows in the same ratio as the mean.
+TEST(Properties, UndrainedStrengthGrowsWithDepthAndHasNoFriction) {
+  const Json cov = {{"cohesion", {{"cov", 0.3}, {"varies", "once"}}}, {"friction", {{"cov", 0.1}}}};
+  const Json constant = {{"cohesion", {{"marginal", "constant"}, {"mean_kPa", 6}, {"material", "clay"}}}};
+  const auto with = [](const Json& properties) {
+    return Json{{"correlation_length_m", 3}, {"terms", 6}, {"properties", properties}};
+  };
+  const Case c = clay_and_sand(with(cov));
+  const ParticlePlan plan = plan_particles(c.model);
+  const SoilProperties stated = material_properties(c.model, plan), soil = soil_of(c, 2).properties;
+  EXPECT_EQ(soil_of(clay_and_sand(with(constant)), 2).properties.c, stated.c);
+  double ratio = 0.0, deepest = 0.0;
+  for (std::size_t i = 0; i < plan.soil.size(); ++i) {
+    if (plan.soil[i].material == 0) continue;
+    EXPECT_EQ(soil.tan_phi[i], 0.0);
+    if (ratio == 0.0) ratio = soil.c[i] / stated.c[i];
+    EXPECT_NEAR(soil.c[i] / stated.c[i], ratio, 1e-12);
+    deepest = std::max(deepest, stated.c[i]);
+  }
+  EXPECT_GT(std::abs(ratio - 1.0), 1e-3);
+  EXPECT_GT(deepest, 6e3 + 2e3 * 2.0);
+  const Case short_form = clay_and_sand({{"correlation_length_m", 3}, {"log_stdev", 0.2}, {"log_mean", -0.8}});
+  const SoilProperties of_short = soil_of(short_form, 2).properties;
+  for (std::size_t i = 0; i < plan.soil.size(); ++i) EXPECT_EQ(of_short.tan_phi[i] == 0.0, plan.soil[i].material == 1);
+}
+
 /// Mean over four realizations of the front of 99 % of the mass after 3 s [m].
 double mean_front(const Json& properties) {
   const Case c = slope_of(properties);
