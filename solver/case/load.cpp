@@ -142,7 +142,8 @@ LoadedCase load_case(Json document, const std::filesystem::path& directory, std:
   out.warnings = name_origins(std::move(out.warnings), applied);
   out.hash = case_hash(out.resolved);
   Json endless = out.resolved;
-  for (const char* key : {"end_s", "snapshot_times_s"}) endless["time"].erase(key);
+  endless["time"].erase("end_s");
+  if (!out.value.model.time.snapshots_exact) endless["time"].erase("snapshot_times_s");  // else the steps depend on it
   out.hash_without_end = case_hash(endless);
   out.bed_source = origins.bed.source;
   out.files = std::move(origins.files);

@@ -59,6 +59,12 @@ void read_snapshots(ObjectReader& in, TimeControl& t) {
   else if (interval && t.snapshots.empty())
     t.snapshots = every(*interval, t.end);
   in.remove_record("snapshot_interval_s");
+  in.flag(
+      "snapshots_exact", t.snapshots_exact,
+      {"Shorten time steps so that snapshots are exactly at the times asked for, the same in every realization, which "
+       "changes results in their last digits; otherwise each is that of the first step at or after its time.",
+       "user", "false"});
+  if (!t.snapshots_exact) in.remove_record("snapshots_exact");  // the hash of earlier cases stays
 }
 
 /// @param m  its high_rate_friction_angle_deg is read, mu_i is set but for delta_mu

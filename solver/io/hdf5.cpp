@@ -82,10 +82,6 @@ std::string unique_name(const std::string& name) {
   return name + "/image" + std::to_string(counter++);
 }
 
-Id open_array(hid_t parent, const std::string& name) {
-  return owned(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), "find", parent, name);
-}
-
 Shape shape_of(hid_t array, hid_t parent, const std::string& name) {
   const Id space = owned(H5Dget_space(array), "read", parent, name);
   std::array<hsize_t, 2> dims{0, 1};
@@ -193,6 +189,10 @@ Id open_group(hid_t parent, const std::string& name) {
   return owned(H5Gopen2(parent, name.c_str(), H5P_DEFAULT), "find", parent, name);
 }
 
+Id open_array(hid_t parent, const std::string& name) {
+  return owned(H5Dopen2(parent, name.c_str(), H5P_DEFAULT), "find", parent, name);
+}
+
 bool has(hid_t parent, const std::string& name) { return H5Lexists(parent, name.c_str(), H5P_DEFAULT) > 0; }
 
 std::vector<std::string> names(hid_t group) {
@@ -269,6 +269,7 @@ void write_text_attribute(hid_t object, const std::string& name, const std::stri
   const Id type(H5Tcopy(H5T_C_S1), "cannot create an attribute");
   H5Tset_size(type, std::max<std::size_t>(text.size(), 1));
   H5Tset_strpad(type, H5T_STR_NULLPAD);
+  if (!std::ranges::all_of(text, [](unsigned char c) { return c < 128; })) H5Tset_cset(type, H5T_CSET_UTF8);
   write_attribute(object, name, type, Id(H5Screate(H5S_SCALAR), "cannot create an attribute"), text.c_str());
 }
 

@@ -57,6 +57,7 @@ hsize_t flush(const Id& file);
 
 Id create_group(hid_t parent, const std::string& name);
 Id open_group(hid_t parent, const std::string& name);
+Id open_array(hid_t parent, const std::string& name);
 bool has(hid_t parent, const std::string& name);
 /// Names of the links in a group, in alphabetical order.
 std::vector<std::string> names(hid_t group);
@@ -121,7 +122,7 @@ std::vector<T> read_array(hid_t parent, const std::string& name) {
 void truncate_rows(hid_t parent, const std::string& name, std::size_t rows);
 /// @}
 
-/// Attributes: a scalar, a list, or a fixed-length ASCII string. Writing over an attribute of the same type replaces
+/// Attributes: a scalar, a list, or a fixed-length string in UTF-8. Writing over an attribute of the same type replaces
 /// its value.
 /// @{
 void write_attribute(hid_t object, const std::string& name, hid_t type, hid_t space, const void* values);

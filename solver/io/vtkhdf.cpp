@@ -96,11 +96,12 @@ void check_lengths(std::span<const Vec2> positions, std::span<const NamedArray> 
 
 SnapshotWriter::SnapshotWriter(fs::path path, hdf5::Id file) : path_(std::move(path)), file_(std::move(file)) {}
 
-SnapshotWriter::SnapshotWriter(fs::path path, const Frame& first)
+SnapshotWriter::SnapshotWriter(fs::path path, const Frame& first, const std::optional<Provenance>& provenance)
     : path_(std::move(path)), times_{first.time}, particles_(first.position.size()), far_(first.origin != Vec2{}) {
   check_lengths(first);
   const hdf5::Id memory = hdf5::create_in_memory();
   vtkhdf::create_skeleton(memory, first);
+  if (provenance) vtkhdf::write_provenance(memory, *provenance);
   vtkhdf::append_step(memory, first, 0);
   vtkhdf::commit(memory, 1);
   write_file_atomically(path_, hdf5::image(memory));

@@ -7,16 +7,19 @@
 // 6) [Pa; XX YY ZZ XY YZ XZ, positive in tension]; density [kg/m3], pressure [Pa], friction_angle_deg, cohesion
 // [Pa], shear_rate [1/s], each (n). Stored once (int32): is_wall, id, each (n). Points of a case
 // far from zero (Terrain::origin) are float64, which keeps the micrometre; the attributes origin_x_m and origin_y_m of
-// VTKHDF name the origin, which is part of them.
+// VTKHDF name the origin, which is part of them. The attribute units of each array says its unit; the attributes title,
+// version, case_hash, seed and realization of the group talus say which run it is.
 // Not thread-safe (HDF5).
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "io/hdf5.hpp"
+#include "io/result_json.hpp"
 #include "math/vec2.hpp"
 #include "simulation/frame.hpp"
 
@@ -28,8 +31,10 @@ namespace talus {
 class SnapshotWriter {
  public:
   /// Creates the file atomically, replacing an older one, and its sidecar with the first step.
+  /// @param provenance  of the run; without it the file does not say which run it is of
   /// @throws IoError naming the path; std::invalid_argument when the frame's arrays differ in length or are empty
-  SnapshotWriter(std::filesystem::path path, const Frame& first);
+  SnapshotWriter(std::filesystem::path path, const Frame& first,
+                 const std::optional<Provenance>& provenance = std::nullopt);
 
   /// Continues a file of an earlier process: steps later than `time` [s] are dropped, so that the file becomes
   /// identical to that of an uninterrupted run.

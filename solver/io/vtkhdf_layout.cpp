@@ -72,6 +72,10 @@ void append_far_points(hid_t root, const Frame& frame) {
   hdf5::append_rows<double>(root, points.path, xyz);
 }
 
+void write_units(hid_t root, const std::string& path, const char* unit) {
+  hdf5::write_text_attribute(hdf5::open_array(root, path), units_attribute, unit);
+}
+
 bool is_points(const Field& f) { return std::string_view(f.path) == points.path; }
 
 }  // namespace
@@ -89,6 +93,17 @@ std::vector<Field> fields_of(hid_t root) {
   for (const OptionalField& optional : optional_fields)
     if (hdf5::has(data, optional.field.name())) all.push_back(optional.field);
   return all;
+}
+
+void write_provenance(hid_t root, const Provenance& provenance) {
+  const hdf5::Id group = hdf5::open_group(root, "talus");
+  hdf5::write_text_attribute(group, title_attribute, provenance.case_title);
+  hdf5::write_text_attribute(group, version_attribute, provenance.version);
+  hdf5::write_text_attribute(group, case_hash_attribute, provenance.case_hash);
+  hdf5::write_attribute<std::uint64_t>(group, seed_attribute, provenance.seed);
+  if (provenance.realization)
+    hdf5::write_attribute<std::int64_t>(group, realization_attribute, *provenance.realization);
+  if (provenance.perturbation) hdf5::write_attribute<double>(group, perturbation_attribute, *provenance.perturbation);
 }
 
 void write_grid(hid_t root, std::size_t n, std::array<std::int64_t, 2> version) {
@@ -122,13 +137,16 @@ void create_skeleton(hid_t root, const Frame& first) {
   for (const Field& f : arrays)
     hdf5::create_rows(root, f.path, far && is_points(f) ? hdf5::type<double>() : hdf5::type<float>(),
                       static_cast<std::size_t>(f.components), std::min(n, max_chunk), Filter::compressed);
+  for (const Field& f : arrays) write_units(root, f.path, f.unit);
   std::vector<std::int32_t> numbers(n);
   std::iota(numbers.begin(), numbers.end(), 0);
   hdf5::write_array<std::int32_t>(root, "VTKHDF/PointData/id", numbers, Filter::compressed);
   for (std::size_t i = 0; i < n; ++i) numbers[i] = i < first.n_soil ? 0 : 1;
   hdf5::write_array<std::int32_t>(root, "VTKHDF/PointData/is_wall", numbers, Filter::compressed);
+  for (const char* name : constant_fields) write_units(root, std::string("VTKHDF/PointData/") + name, "1");
   hdf5::write_attribute<std::int64_t>(hdf5::open_group(root, "VTKHDF/Steps"), "NSteps", 0);
   hdf5::create_rows(root, step_times, hdf5::type<double>(), 1, steps_per_chunk);
+  write_units(root, step_times, "s");
   for (const auto& [path, number] : step_numbers(arrays, 0, 0))
     hdf5::create_rows(root, path, hdf5::type<std::int64_t>(), 1, steps_per_chunk);
 }

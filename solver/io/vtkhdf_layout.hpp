@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "io/hdf5.hpp"
+#include "io/result_json.hpp"
 #include "math/angle.hpp"
 #include "simulation/frame.hpp"
 
@@ -20,6 +21,7 @@ namespace talus::vtkhdf {
 /// An array that changes with time: how the numbers of particle i come out of a frame and go back into it.
 struct Field {
   const char* path;
+  const char* unit;  ///< as in the keys of a case; "1": none
   int components;
   void (*get)(const Frame& frame, std::size_t i, float* to);
   void (*set)(Frame& frame, std::size_t i, const float* from);
@@ -29,8 +31,8 @@ struct Field {
 };
 
 template <std::vector<Vec2> Frame::*member>
-constexpr Field vector_field(const char* path) {
-  return {path, 3,
+constexpr Field vector_field(const char* path, const char* unit) {
+  return {path, unit, 3,
           [](const Frame& f, std::size_t i, float* to) {
             to[0] = static_cast<float>((f.*member)[i].x);
             to[1] = static_cast<float>((f.*member)[i].y);
@@ -42,23 +44,23 @@ constexpr Field vector_field(const char* path) {
 }
 
 template <std::vector<double> Frame::*member>
-constexpr Field scalar_field(const char* path) {
-  return {path, 1, [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>((f.*member)[i]); },
+constexpr Field scalar_field(const char* path, const char* unit) {
+  return {path, unit, 1, [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>((f.*member)[i]); },
           [](Frame& f, std::size_t i, const float* from) { (f.*member)[i] = *from; }};
 }
 
 inline constexpr std::array<Field, 8> fields = {{
-    vector_field<&Frame::position>("VTKHDF/Points"),
-    vector_field<&Frame::velocity>("VTKHDF/PointData/velocity"),
-    vector_field<&Frame::displacement>("VTKHDF/PointData/displacement"),
-    scalar_field<&Frame::density>("VTKHDF/PointData/density"),
-    scalar_field<&Frame::pressure>("VTKHDF/PointData/pressure"),
-    {"VTKHDF/PointData/friction_angle_deg", 1,
+    vector_field<&Frame::position>("VTKHDF/Points", "m"),
+    vector_field<&Frame::velocity>("VTKHDF/PointData/velocity", "m/s"),
+    vector_field<&Frame::displacement>("VTKHDF/PointData/displacement", "m"),
+    scalar_field<&Frame::density>("VTKHDF/PointData/density", "kg/m3"),
+    scalar_field<&Frame::pressure>("VTKHDF/PointData/pressure", "Pa"),
+    {"VTKHDF/PointData/friction_angle_deg", "deg", 1,
      [](const Frame& f, std::size_t i, float* to) { *to = static_cast<float>(friction_angle_deg(f.tan_phi[i])); },
      [](Frame& f, std::size_t i, const float* from) { f.tan_phi[i] = std::tan(radians(*from)); }},
-    scalar_field<&Frame::shear_rate>("VTKHDF/PointData/shear_rate"),
+    scalar_field<&Frame::shear_rate>("VTKHDF/PointData/shear_rate", "1/s"),
     // VTK's order of a symmetric tensor: XX YY ZZ XY YZ XZ.
-    {"VTKHDF/PointData/stress", 6,
+    {"VTKHDF/PointData/stress", "Pa", 6,
      [](const Frame& f, std::size_t i, float* to) {
        for (int k = 0; k < 4; ++k) to[k] = static_cast<float>(f.stress[i][k]);
        to[4] = to[5] = 0.0f;
@@ -76,8 +78,8 @@ struct OptionalField {
   std::vector<double> Frame::*array;
 };
 inline constexpr std::array<OptionalField, 2> optional_fields = {
-    {{scalar_field<&Frame::cohesion>("VTKHDF/PointData/cohesion_Pa"), &Frame::cohesion},
-     {scalar_field<&Frame::viscosity>("VTKHDF/PointData/viscosity_Pa_s"), &Frame::viscosity}}};
+    {{scalar_field<&Frame::cohesion>("VTKHDF/PointData/cohesion_Pa", "Pa"), &Frame::cohesion},
+     {scalar_field<&Frame::viscosity>("VTKHDF/PointData/viscosity_Pa_s", "Pa s"), &Frame::viscosity}}};
 
 /// The arrays that change with time, of a frame or of a file: all of `fields`, then those of optional_fields that are
 /// there.
@@ -99,6 +101,19 @@ inline constexpr std::size_t max_chunk = 65536;  ///< rows compressed together
 /// they are in the coordinates of the case, as in every file.
 inline constexpr std::array<const char*, 2> origin_attributes{"origin_x_m", "origin_y_m"};
 
+/// Name of the attribute with the unit of an array; xarray and the CF conventions know it.
+inline constexpr const char* units_attribute = "units";
+/// Names of the attributes of the group talus: which run the snapshots are of. A median run has no realization, and
+/// only a replicate of the noise floor has a perturbation.
+inline constexpr const char* title_attribute = "title";
+inline constexpr const char* version_attribute = "version";
+inline constexpr const char* case_hash_attribute = "case_hash";
+inline constexpr const char* seed_attribute = "seed";
+inline constexpr const char* realization_attribute = "realization";
+inline constexpr const char* perturbation_attribute = "perturbation";
+
+/// Writes the attributes of the group talus, which must exist.
+void write_provenance(hid_t root, const Provenance& provenance);
 /// Writes version, type, and the cells: one vertex for each of n points.
 void write_grid(hid_t root, std::size_t n, std::array<std::int64_t, 2> version);
 /// Everything of a file of snapshots that does not change with time, and empty lists for what does.

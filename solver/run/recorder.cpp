@@ -1,5 +1,6 @@
 #include "run/recorder.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "io/history.hpp"
@@ -13,10 +14,12 @@ constexpr int history_rows = 500;  ///< of a run that goes on to its end time
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& directory, const Simulation& simulation, const Model& model,
-                   bool resumed)
+                   const Provenance& provenance, bool resumed)
     : history_file_(directory / "history.csv"),
       target_file_(directory / "targets.csv"),
       due_(model.time.snapshots),
+      exact_(model.time.snapshots_exact),
+      end_(model.time.end),
       history_interval_(model.time.end / history_rows),
       targets_(model.targets) {
   const auto path = directory / "snapshots.vtkhdf";
@@ -29,12 +32,15 @@ Recorder::Recorder(const std::filesystem::path& directory, const Simulation& sim
       for (const TargetRow& row : read_target_history(target_file_, targets_))
         if (row.step <= simulation.steps()) target_history_.push_back(row);
   } else {
-    writing_ =
-        std::async(std::launch::async, [this, path, frame = simulation.frame()] { snapshots_.emplace(path, frame); });
+    writing_ = std::async(std::launch::async, [this, path, provenance, frame = simulation.frame()] {
+      snapshots_.emplace(path, frame, provenance);
+    });
   }
   if (history_.empty()) add_rows(simulation);
   while (!due_.empty() && due_.front() <= simulation.time()) due_.erase(due_.begin());
 }
+
+double Recorder::next_stop() const { return exact_ && !due_.empty() ? std::min(due_.front(), end_) : end_; }
 
 void Recorder::record(const Simulation& simulation) {
   if (writing_.valid() && writing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) writing_.get();

@@ -15,12 +15,15 @@ namespace talus {
 /// written by a thread of their own while the run goes on. Not thread-safe: one run owns it.
 class Recorder {
  public:
-  /// @param resumed  go on with the files of an earlier process, as they were at the time of the simulation
+  /// @param provenance  is written into the snapshots
+  /// @param resumed     go on with the files of an earlier process, as they were at the time of the simulation
   /// @throws IoError when those cannot be read
-  Recorder(const std::filesystem::path& directory, const Simulation& simulation, const Model& model, bool resumed);
+  Recorder(const std::filesystem::path& directory, const Simulation& simulation, const Model& model,
+           const Provenance& provenance, bool resumed);
 
-  /// To be called after every step. A snapshot is that of the first step at or after its time: no step is shortened for
-  /// it.
+  /// The time that the next step must not pass [s]: the end, or with TimeControl::snapshots_exact the next snapshot.
+  double next_stop() const;
+  /// To be called after every step. A snapshot is that of the first step at or after its time.
   /// @throws IoError when a snapshot could not be written
   void record(const Simulation& simulation);
   /// Waits until the last snapshot is in its file. To be called before anything else that uses HDF5.
@@ -40,6 +43,8 @@ class Recorder {
   std::filesystem::path history_file_, target_file_;
   std::optional<SnapshotWriter> snapshots_;
   std::vector<double> due_;  ///< snapshot times to come [s]
+  bool exact_;               ///< steps end at the times of snapshots
+  double end_;               ///< of the run [s]
   double history_interval_;  ///< [s]
   std::vector<HistoryRow> history_;
   std::vector<Target> targets_;

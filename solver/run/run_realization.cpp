@@ -102,7 +102,7 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
     fs::remove(out.path() / "result.json");  // of the earlier end
   }
   write_file_atomically(out.path() / "case.resolved.json", loaded.resolved.dump(2) + "\n");
-  Recorder recorder(out.path(), simulation, problem.model, resumed);
+  Recorder recorder(out.path(), simulation, problem.model, provenance, resumed);
   const auto write_checkpoint_now = [&] {
     CheckpointState state = simulation.state();
     state.wall_clock = earlier + elapsed();
@@ -119,7 +119,7 @@ RunOutcome run_realization(LoadedCase loaded, const RunRequest& request, const R
         return {false, simulation.time(), {}, {}};
       }
       const double before = elapsed();
-      simulation.step(problem.model.time.end);
+      simulation.step(recorder.next_stop());
       threads.record(elapsed() - before);
       omp_set_num_threads(threads.count());
       recorder.record(simulation);

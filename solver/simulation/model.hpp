@@ -24,6 +24,7 @@ struct TimeControl {
   std::optional<double> fixed_step;  ///< constant time step [s]; unset: from the Courant number
   std::optional<double> max_step;    ///< upper bound of the Courant step [s]
   std::vector<double> snapshots;     ///< times [s], increasing, in [0, end]; start and end are always kept
+  bool snapshots_exact = false;      ///< shorten steps to end at these times
   std::optional<StopAtRest> stop_at_rest;
   bool operator==(const TimeControl&) const = default;
 };

@@ -42,6 +42,8 @@ ELSEWHERE = {
     "talus stats road --at 45 --at name=road": "tests/solver/cli/test_targets.py",
     "talus compare without with": "tests/solver/cli/test_targets.py",
     "deploy/demo.sh": "tests/deploy/test_package.py",
+    "pip install ./deploy/python": "tests/python/test_package.py",
+    "ctest --preset release -R python_": "tests/python/CMakeLists.txt",
     "tests/run.sh": ".ci/run",
     "cmake --build --preset release && (cd build/release && cpack -G DEB)": "deploy/Dockerfile",
     "apt-get install ./build/release/talus_0.1.0_amd64.deb": "tests/deploy/test_package.py",
@@ -108,7 +110,9 @@ class Commands(unittest.TestCase):
         kinds = {(page.relative_to(SOURCE).as_posix(), kind) for page in pages() for kind, _ in blocks(page)}
         self.assertEqual(kinds, {("README.md", "sh elsewhere"), ("README.md", "sh"), ("README.md", "json"),
                                  ("tests/validation/PAPER.md", "sh"),
-                                 ("service/README.md", "sh elsewhere"), ("service/README.md", "sh"), ("deploy/slurm/README.md", "sh elsewhere")})
+                                 ("service/README.md", "sh elsewhere"), ("service/README.md", "sh"), ("deploy/slurm/README.md", "sh elsewhere"),
+                                 ("deploy/python/README.md", "sh elsewhere"), ("deploy/python/README.md", "python"),
+                                 ("tests/python/README.md", "sh elsewhere")})
 
     def test_links_lead_somewhere(self):
         seen = 0

@@ -6,7 +6,7 @@ directory=$1
 requirements=$(dirname "$0")/requirements.txt
 done_mark=$directory/installed-requirements.txt
 
-if cmp -s "$requirements" "$done_mark" && "$directory/bin/python" -c "import vtkmodules, h5py, jsonschema, matplotlib.pyplot, schemathesis, owslib, umbridge"; then
+if cmp -s "$requirements" "$done_mark" && "$directory/bin/python" -c "import vtkmodules, h5py, jsonschema, matplotlib.pyplot, schemathesis, owslib, umbridge, xarray, nbclient, mypy, openapi_python_client"; then
   exit 0
 fi
 rm -f "$done_mark"

@@ -120,6 +120,39 @@ TEST(Snapshots, OfVaryingProperties) {
   EXPECT_THROW(SnapshotWriter(dir / "bad.vtkhdf", short_one), std::invalid_argument);
 }
 
+// Every array says its unit and the file which run it is of, also after a resumption.
+TEST(Snapshots, SayUnitsAndRun) {
+  const TemporaryDirectory dir;
+  Provenance of{.version = "1.2.3", .seed = 9007199254740991, .realization = 7, .case_hash = "0123456789abcdef"};
+  of.case_title = "Böschung über der Straße";
+  SnapshotWriter(dir / "s.vtkhdf", known_frame(n, n_soil, 0), of).close();
+  SnapshotWriter::resume(dir / "s.vtkhdf", 0.0).close();
+  const hdf5::Id file = hdf5::open_file(dir / "s.vtkhdf", hdf5::Access::read);
+  const hdf5::Id group = hdf5::open_group(file, "talus");
+  EXPECT_EQ(hdf5::read_text_attribute(group, "title"), of.case_title);
+  EXPECT_EQ(hdf5::read_text_attribute(group, "version"), of.version);
+  EXPECT_EQ(hdf5::read_text_attribute(group, "case_hash"), of.case_hash);
+  EXPECT_EQ(hdf5::read_attribute<std::uint64_t>(group, "seed"), of.seed);
+  EXPECT_EQ(hdf5::read_attribute<std::int64_t>(group, "realization"), 7);
+  EXPECT_FALSE(hdf5::has_attribute(group, "perturbation"));
+  std::map<std::string, std::string> units;
+  for (const std::string& name : hdf5::names(hdf5::open_group(file, "VTKHDF/PointData")))
+    units[name] = hdf5::read_text_attribute(hdf5::open_array(file, "VTKHDF/PointData/" + name), "units");
+  EXPECT_EQ(units["velocity"], "m/s");
+  EXPECT_EQ(units["density"], "kg/m3");
+  EXPECT_EQ(units["friction_angle_deg"], "deg");
+  EXPECT_EQ(units["stress"], "Pa");
+  EXPECT_EQ(units["id"], "1");
+  EXPECT_EQ(hdf5::read_text_attribute(hdf5::open_array(file, "VTKHDF/Points"), "units"), "m");
+  EXPECT_EQ(hdf5::read_text_attribute(hdf5::open_array(file, "VTKHDF/Steps/Values"), "units"), "s");
+  of.realization.reset();
+  of.perturbation = 1e-6;
+  SnapshotWriter(dir / "median.vtkhdf", known_frame(n, n_soil, 0), of).close();
+  const hdf5::Id median = hdf5::open_file(dir / "median.vtkhdf", hdf5::Access::read);
+  EXPECT_FALSE(hdf5::has_attribute(hdf5::open_group(median, "talus"), "realization"));
+  EXPECT_EQ(hdf5::read_attribute<double>(hdf5::open_group(median, "talus"), "perturbation"), 1e-6);
+}
+
 TEST(Snapshots, OfACaseFarFromZeroKeepItsOrigin) {
   const TemporaryDirectory dir;
   Frame far = known_frame(4, 2, 0);
