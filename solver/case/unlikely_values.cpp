@@ -126,17 +126,19 @@ void warn_of_walls(const Boundary& b, std::vector<Fault>& warnings) {
     if (b.stretches[k].c) warn(cohesion, *b.stretches[k].c, section, warnings);
     if (b.stretches[k].xi) warn(turbulence, *b.stretches[k].xi, section, warnings);
   }
-  /// The stated mean of a random property.
-  void warn_of_mean(const PropertySpec& p, std::vector<Fault>& warnings) {
-    if (!p.mean) return;
-    const bool angle = p.property == Property::friction;
-    const Usual* const usual[] = {&friction_angle, &cohesion, &density, &viscosity};
-    const Usual& of = *usual[index_of(p.property)];
-    const double value = angle ? friction_angle_deg(*p.mean) : *p.mean;
-    if (!is_usual(of, value))
-      warnings.push_back({property_pointer(p.property),
-                          "a mean of " + rounded(value) + " " + of.unit + " is unusual for soil (" + of.range + ")"});
-  }
+}
+
+/// The stated mean of a random property.
+void warn_of_mean(const PropertySpec& p, std::vector<Fault>& warnings) {
+  if (!p.mean) return;
+  const bool angle = p.property == Property::friction;
+  const Usual* const usual[] = {&friction_angle, &cohesion, &density, &viscosity};
+  const Usual& of = *usual[index_of(p.property)];
+  const double value = angle ? friction_angle_deg(*p.mean) : *p.mean;
+  if (!is_usual(of, value))
+    warnings.push_back({property_pointer(p.property),
+                        "a mean of " + rounded(value) + " " + of.unit + " is unusual for soil (" + of.range + ")"});
+}
 
 }  // namespace
 
