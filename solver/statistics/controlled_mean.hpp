@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "statistics/regression.hpp"
 #include "statistics/sample.hpp"
 
 namespace talus {
@@ -26,10 +27,9 @@ struct ControlledMean {
   std::vector<Slope> slopes;    ///< of the K controls that are used
   double residual_share = 1.0;  ///< variance of the residuals over that of y, each over its degrees of freedom [-]
   double worth = 0.0;           ///< how many runs would give the plain mean this standard error
+  std::vector<std::vector<double>> slope_covariance;  ///< K x K, HC3
+  double student = 0.0;  ///< t_{0.975, n - K - 1}, which makes a standard error an interval
 };
-
-/// At least so many values of the sample for each control that is used.
-inline constexpr std::size_t runs_per_control = 5;
 
 /// The mean of `y` by regression on the first K controls, K the number of them whose leave-one-out error is least
 /// (PRESS; Allen 1974). Variances are estimated from the residuals over (1 - leverage), HC3 of MacKinnon & White 1985,
@@ -41,5 +41,7 @@ inline constexpr std::size_t runs_per_control = 5;
 /// @return unset where n < 2
 /// @throws std::invalid_argument where a control has not n values
 std::optional<ControlledMean> controlled_mean(std::span<const double> y, std::span<const std::vector<double>> controls);
+/// The same of a regression already made. @param y  its n values, n - K - 1 >= 1
+ControlledMean controlled_mean(const Regression& of, std::span<const double> y);
 
 }  // namespace talus
