@@ -96,15 +96,17 @@ std::string progress_line(const Progress& p) {
   if (p.mean) text += format(", mean farthest particle %.2f", *p.mean);
   if (p.mean_half_width) text += format(" +/- %.2f", *p.mean_half_width);
   if (p.mean) text += " m";
-  if (p.leading_mean)
-    text += format(", of %s %.2f +/- %.2f m by regression", leading_measure.label, p.leading_mean->mean,
-                   p.leading_mean->standard_error * p.leading_mean->student);
   if (const auto left = time_left(p)) text += ", " + duration(*left) + " left";
   text += ", " + std::to_string(p.running) + " running";
   if (!p.pending_reason.empty()) text += ", " + p.pending_reason;
-  if (p.made_now == 0 || p.elapsed <= 0.0) return text;
-  const double rate = 3600.0 * static_cast<double>(p.made_now) / p.elapsed;
-  return text + format(rate < 10.0 ? ", %.2g/h" : ", %.0f/h", rate);
+  if (p.made_now > 0 && p.elapsed > 0.0) {
+    const double rate = 3600.0 * static_cast<double>(p.made_now) / p.elapsed;
+    text += format(rate < 10.0 ? ", %.2g/h" : ", %.0f/h", rate);
+  }
+  if (p.leading_mean)
+    text += format("; %s: %.2f +/- %.2f m by regression", leading_measure.label, p.leading_mean->mean,
+                   p.leading_mean->standard_error * p.leading_mean->student);
+  return text;
 }
 
 /// The bar takes what the line leaves, and no less than 8 columns.

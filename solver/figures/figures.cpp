@@ -17,6 +17,7 @@
 #include "io/history.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
+#include "study/plan.hpp"
 #include "study/record.hpp"
 #include "support/error.hpp"
 
@@ -156,8 +157,9 @@ std::vector<fs::path> plot_study(const fs::path& directory) {
   if (!fs::exists(directory / "case.resolved.json")) return album.drawn();
   const LoadedCase loaded = resolved_case(directory);
   const Model& model = loaded.value.model;
-  album.add_plot("influence",
-                 [&](const fs::path& name) { return plot_influence(study, read_tables(directory), loaded, name); });
+  if (find_plan(directory))  // a study of an early version may have none
+    album.add_plot("influence",
+                   [&](const fs::path& name) { return plot_influence(study, read_tables(directory), loaded, name); });
   album.add("hit_probability",
             hit_probability_sheet(study, model.terrain, model.slide, model.targets, structures_of(model)));
   for (const std::string which : {"first", "worst"}) {
