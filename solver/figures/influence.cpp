@@ -39,7 +39,7 @@ Frame frame_of(const Influence& influence, const std::vector<Vec2>& points) {
 std::string others_text(const Plan& plan, const RegressionSummary& of) {
   std::string text;
   for (std::size_t block = 0; block < plan.draws.size(); ++block)
-    if (plan.draws[block].count == 1) text += (text.empty() ? ". Drawn once: " : ", ") + share_text(plan, of, block);
+    if (plan.draws[block].count == 1) text += (text.empty() ? "; drawn once: " : ", ") + share_text(plan, of, block);
   return text;
 }
 
@@ -69,11 +69,11 @@ std::vector<fs::path> plot_influence(const StudyFiles& study, Tables tables, con
   for (std::size_t k = 0; k < all.size(); ++k)
     shots.push_back({&frames[k], Colour::influence,
                      share_text(tables.plan, regression, all[k].block) + " of the variance of the front"});
-  const Stamps stamps{study.title,
-                      "Change of the 99 % front with one standard deviation of the soil at a place (white: within the "
-                      "95 % interval of 0)" +
-                          others_text(tables.plan, regression),
-                      study.source + "  ·  " + count_text(study), study.quality};
+  const Stamps stamps{
+      study.title,
+      "Change of the 99 % front per standard deviation of the soil at a place; white: not distinct from 0" +
+          others_text(tables.plan, regression),
+      study.source + "  ·  " + count_text(study), study.quality};
   std::vector<fs::path> drawn;
   for (const char* ending : {".svg", ".png"})
     plot_profiles(shots, model.terrain, model.dx, drawn.emplace_back(fs::path(name).concat(ending)), stamps,
