@@ -69,11 +69,10 @@ std::vector<fs::path> plot_influence(const StudyFiles& study, Tables tables, con
   for (std::size_t k = 0; k < all.size(); ++k)
     shots.push_back({&frames[k], Colour::influence,
                      share_text(tables.plan, regression, all[k].block) + " of the variance of the front"});
-  const Stamps stamps{
-      study.title,
-      "Change of the 99 % front per standard deviation of the soil at a place; white: not distinct from 0" +
-          others_text(tables.plan, regression),
-      study.source + "  ·  " + count_text(study), study.quality};
+  const Stamps stamps{study.title,
+                      "Change of the 99 % front per standard deviation at a place; white: not distinct from 0" +
+                          others_text(tables.plan, regression),
+                      study.source + "  ·  " + count_text(study), study.quality};
   std::vector<fs::path> drawn;
   for (const char* ending : {".svg", ".png"})
     plot_profiles(shots, model.terrain, model.dx, drawn.emplace_back(fs::path(name).concat(ending)), stamps,
