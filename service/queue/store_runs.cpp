@@ -258,14 +258,17 @@ MeasureSample Store::measure_sample(const Job& job, const Measure& measure,
     sample.quality = job.quality;
     sample.complete = job.done + job.failed == job.planned;
     // The index holds the measures of all runs that are done, in order, and nothing else: a narrow scan.
-    const std::string done = "SELECT " + key +
-                             " FROM runs INDEXED BY runs_measures WHERE job = ? AND level = 0 AND state = 'done' AND " +
-                             key + " IS NOT NULL";
+    const std::string of_done =
+        " FROM runs INDEXED BY runs_measures WHERE job = ? AND level = 0 AND state = 'done' AND " + key +
+        " IS NOT NULL";
+    const std::string done = "SELECT " + key + of_done;
     if (job.replicates_ended > 0) sample.noise = column(db, done + " AND kind = 0 AND idx = 0", job.number);
     const std::vector<double> replicates = column(db, done + " AND kind = 1 ORDER BY idx", job.number);
     sample.noise.insert(sample.noise.end(), replicates.begin(), replicates.end());
     if (!stop_half_width) {
       sample.values = column(db, done + " AND kind = 0 ORDER BY idx", job.number);
+      for (const double index : column(db, "SELECT idx" + of_done + " AND kind = 0 ORDER BY idx", job.number))
+        sample.realizations.push_back(static_cast<std::int64_t>(index));
       sample.censored = column(db,
                                "SELECT " + key +
                                    " FROM runs WHERE job = ? AND level = 0 AND kind = 0 AND state = 'done' AND "
@@ -291,10 +294,12 @@ MeasureSample Store::measure_sample(const Job& job, const Measure& measure,
       Row(query) >> index >> influence_zone >> record.verdict >> reason >> record.lower_bounds >> value;
       rule.add(index, influence_zone);
       sample.quality.add(influence_zone ? record : failed_record(index, reason));
-      if (!influence_zone)
+      if (!influence_zone) {
         ++sample.failed;
-      else if (value)
+      } else if (value) {
         sample.values.push_back(*value);
+        sample.realizations.push_back(index);
+      }
       if (value && influence_zone && record.is_lower_bound(measure)) sample.censored.push_back(*value);
     }
     sample.complete = sample.complete || rule.size();

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <vector>
 
 #include "study/quality_summary.hpp"
 #include "support/measures.hpp"
@@ -55,6 +57,30 @@ std::string ranges(const Json& all) {
   return all.size() > most ? text + ", ..." : text;
 }
 
+/// "friction 62 % [55, 69]"
+std::string share_text(const Json& of) {
+  return format("%s %.0f %% [%.0f, %.0f]", of.at("name").get<std::string>().c_str(),
+                100.0 * of.at("share").get<double>(), 100.0 * of.at("ci95")[0].get<double>(),
+                100.0 * of.at("ci95")[1].get<double>());
+}
+
+/// What moves a measure: the share of each property, and the three strongest numbers.
+std::string sensitivity_text(const std::string& key, const Json& regression) {
+  std::string text = "variance of " + key + " explained by";
+  for (std::size_t i = 0; i < regression.at("shares").size(); ++i)
+    text += (i == 0 ? " " : ", ") + share_text(regression.at("shares")[i]);
+  text += "\n";
+  std::vector<Json> slopes = regression.at("slopes");
+  std::ranges::stable_sort(slopes, std::greater<>(),
+                           [](const Json& of) { return std::abs(of["per_stdev"].get<double>()); });
+  constexpr std::size_t most = 3;
+  for (std::size_t i = 0; i < std::min(most, slopes.size()); ++i)
+    text += std::string(i == 0 ? "strongest coefficients, m per standard deviation: " : ", ") +
+            slopes[i].at("name").get<std::string>() + format(" %+.3f ", slopes[i].at("per_stdev").get<double>()) +
+            interval(slopes[i].at("ci95"));
+  return text + "\n";
+}
+
 }  // namespace
 
 std::optional<double> time_left(const Progress& p) {
@@ -73,9 +99,14 @@ std::string progress_line(const Progress& p) {
   if (const auto left = time_left(p)) text += ", " + duration(*left) + " left";
   text += ", " + std::to_string(p.running) + " running";
   if (!p.pending_reason.empty()) text += ", " + p.pending_reason;
-  if (p.made_now == 0 || p.elapsed <= 0.0) return text;
-  const double rate = 3600.0 * static_cast<double>(p.made_now) / p.elapsed;
-  return text + format(rate < 10.0 ? ", %.2g/h" : ", %.0f/h", rate);
+  if (p.made_now > 0 && p.elapsed > 0.0) {
+    const double rate = 3600.0 * static_cast<double>(p.made_now) / p.elapsed;
+    text += format(rate < 10.0 ? ", %.2g/h" : ", %.0f/h", rate);
+  }
+  if (p.leading_mean)
+    text += format("; %s: %.2f +/- %.2f m by regression", leading_measure.label, p.leading_mean->mean,
+                   p.leading_mean->standard_error * p.leading_mean->student);
+  return text;
 }
 
 /// The bar takes what the line leaves, and no less than 8 columns.
@@ -95,8 +126,8 @@ int terminal_width() {
 
 std::string study_report(const Json& study) {
   const std::string quality = study.contains("quality") ? quality_line(study.at("quality")) : "";
-  return (quality.empty() ? "" : quality + "\n") + summary_table(study) + "\nrun-out distance [m], front of " +
-         leading_measure.label + " (" + leading_measure.key + ")\n" +
+  return (quality.empty() ? "" : quality + "\n") + summary_table(study) + regression_text(study) +
+         "\nrun-out distance [m], front of " + leading_measure.label + " (" + leading_measure.key + ")\n" +
          text_histogram(study.at("quantities").at(leading_measure.key), 80);
 }
 
@@ -144,6 +175,24 @@ std::string summary_table(const Json& study) {
   if (const auto thickness = study.find("front_thickness_m"); thickness != study.end() && thickness->is_number())
     text += "front_at_thickness_m: where the deposit is " + rounded(thickness->get<double>()) + " m thick\n";
   return text + "noise: standard deviation of the numerical noise; a stdev near it says nothing about the soil\n";
+}
+
+std::string regression_text(const Json& study) {
+  const Json& leading = study.at("quantities").at(leading_measure.key);
+  if (!leading.contains("regression")) return {};  // of an earlier version
+  const Json& of_leading = leading.at("regression");
+  if (of_leading.contains("none_because"))
+    return "no mean by regression: " + of_leading.at("none_because").get<std::string>() + "\n";
+  std::string text = "mean by regression on the coefficients of the random field:\n";
+  for (const Measure* measure : reading_order()) {
+    if (!study.at("quantities").contains(measure->key)) continue;
+    const Json& of = study.at("quantities").at(measure->key).at("regression");
+    if (of.contains("none_because")) continue;
+    text += format("%-20s %9s  %-19s  %zu coefficients, worth %.0f plain runs\n", measure->key,
+                   number(of.at("mean")).c_str(), interval(of.at("mean_ci95")).c_str(), of.at("slopes").size(),
+                   of.at("worth_runs").get<double>());
+  }
+  return text + sensitivity_text(leading_measure.key, of_leading);
 }
 
 std::string text_histogram(const Json& quantity, int width) {

@@ -28,6 +28,9 @@ std::string study_report(const Json& study);
 /// The table alone.
 std::string summary_table(const Json& study);
 
+/// The means by regression, and what moves the leading measure; a phrase where there is no regression.
+std::string regression_text(const Json& study);
+
 /// The histogram of a quantity as bars of text, `width` columns in all; empty where there is none.
 std::string text_histogram(const Json& quantity, int width);
 

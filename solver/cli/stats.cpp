@@ -6,10 +6,13 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 
+#include "case/load.hpp"
 #include "cli/help.hpp"
 #include "cli/progress.hpp"
 #include "cli/verbs.hpp"
+#include "run/drawn_numbers.hpp"
 #include "study/directory_store.hpp"
 #include "study/publish.hpp"
 #include "study/summary.hpp"
@@ -70,6 +73,14 @@ void write_prepared(const StudyPaths& paths, const Tables& tables) {
   write_tables(paths, tables.plan, tables.runs, tables.floor);
 }
 
+/// What the realizations drew, from the case, where the plan is of a version that did not write it down. Without the
+/// case, or with one that this version reads otherwise, it stays unknown.
+void find_draws(Plan& plan, const fs::path& directory) try {
+  if (!plan.draws.empty()) return;
+  add_missing_draws(plan, load_case(StudyPaths{directory}.resolved_case()));
+} catch (const std::runtime_error&) {
+}
+
 constexpr std::string_view name_prefix = "name=";
 
 /// The places of --at: a distance, or name=TARGET. Nothing and a message on stderr where one is neither.
@@ -121,7 +132,8 @@ Exit refuse(const std::string& why) {
 Exit stats(const StatsOptions& options) {
   if (const std::string wrong = misuse(options); !wrong.empty()) return refuse(wrong);
   const fs::path& first = options.directories.front();
-  const Tables tables = options.from_runs ? tables_from_runs(first) : merge(options.directories);
+  Tables tables = options.from_runs ? tables_from_runs(first) : merge(options.directories);
+  find_draws(tables.plan, first);
   const StudySummary summary = summary_of(tables.plan, tables.runs, tables.floor);
   if (const std::string wrong = unknown_quantity(options, tables.plan); !wrong.empty()) return refuse(wrong);
   if (!options.at.empty()) return print_answers(options, tables.plan, summary);  // a question only

@@ -20,6 +20,7 @@
 #include "executor/slurm.hpp"
 #include "executor/slurm_batch.hpp"
 #include "figures/figures.hpp"
+#include "run/drawn_numbers.hpp"
 #include "run/warnings.hpp"
 #include "study/run_study.hpp"
 #include "support/files.hpp"
@@ -150,7 +151,8 @@ Exit study(const StudyOptions& options) try {
   LoadedCase loaded = load_case(options.case_file, overrides);
   std::ranges::move(warnings_before_run(loaded.value), std::back_inserter(loaded.warnings));
   print_warnings(loaded.warnings);
-  const Plan plan = make_plan(loaded, choose_seed(options, loaded.value), version);
+  Plan plan = make_plan(loaded, choose_seed(options, loaded.value), version);
+  plan.draws = drawn_numbers(loaded.value);
   loaded.resolved["study"]["seed"] = plan.seed;
   if (options.prepare) {
     prepare_study(plan, loaded.resolved, options.out);

@@ -32,7 +32,8 @@ const ColourScale& scale_of(Colour colour) {
       {"standard deviation (kPa)", &magma_on_white, [](const Frame& f, std::size_t i) { return f.stdev[i] / 1000.0; }},
       {"standard deviation (kN/m3)", &magma_on_white,
        [](const Frame& f, std::size_t i) { return f.stdev[i] * 9.81 / 1000.0; }},
-      {"standard deviation (Pa s)", &magma_on_white, [](const Frame& f, std::size_t i) { return f.stdev[i]; }}};
+      {"standard deviation (Pa s)", &magma_on_white, [](const Frame& f, std::size_t i) { return f.stdev[i]; }},
+      {"front (m)", &blue_white_vermillion, [](const Frame& f, std::size_t i) { return f.stdev[i]; }}};
   return scales[static_cast<int>(colour)];
 }
 

@@ -48,6 +48,9 @@ constexpr Palette darker_part(const Palette& palette, double share) {
     part[k] = colour_at(palette, share * static_cast<double>(k) / static_cast<double>(part.size() - 1));
   return part;
 }
+/// Diverging, blue to vermillion with the lightest in the middle (Okabe & Ito's pair, safe for colour-blind readers).
+inline constexpr Palette blue_white_vermillion{0x004a7a, 0x0072b2, 0x4b9cca, 0x8fc1de, 0xc9e0ee, 0xf4f4f4,
+                                               0xf7d9c4, 0xeeb08a, 0xe38550, 0xd55e00, 0x943f00};
 inline constexpr Palette plasma_on_white = darker_part(plasma, 0.9);
 inline constexpr Palette magma_on_white = darker_part(magma, 0.8);
 
@@ -74,7 +77,8 @@ enum class Colour {
   friction_stdev,  ///< standard deviations of the properties, in the same order
   cohesion_stdev,
   unit_weight_stdev,
-  viscosity_stdev
+  viscosity_stdev,
+  influence  ///< in Frame::stdev [m], negative or positive
 };
 
 /// How a quantity is shown.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <iterator>
 #include <set>
 #include <span>
 #include <string>
@@ -11,10 +12,12 @@
 #include "figures/charts.hpp"
 #include "figures/energy.hpp"
 #include "figures/ground.hpp"
+#include "figures/influence.hpp"
 #include "figures/profile.hpp"
 #include "io/history.hpp"
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
+#include "study/plan.hpp"
 #include "study/record.hpp"
 #include "support/error.hpp"
 
@@ -37,6 +40,11 @@ class Album {
   }
   void add(const std::string& name, const Sheet& sheet) {
     for (const char* ending : {".svg", ".png"}) sheet.save(drawn_.emplace_back(directory_ / (name + ending)));
+  }
+  /// What a function draws, given a path without ending.
+  template <class Plot>
+  void add_plot(const std::string& name, const Plot& plot) {
+    std::ranges::move(plot(directory_ / name), std::back_inserter(drawn_));
   }
   void add(const std::string& name, std::span<const Snapshot> snapshots, const Model& model, const Stamps& stamps,
            ProfileOptions options = {}) {
@@ -147,7 +155,11 @@ std::vector<fs::path> plot_study(const fs::path& directory) {
   album.add("friction_angle_scatter", friction_angle_sheet(study));
   album.add("spread", spread_sheet(study));
   if (!fs::exists(directory / "case.resolved.json")) return album.drawn();
-  const Model model = resolved_case(directory).value.model;
+  const LoadedCase loaded = resolved_case(directory);
+  const Model& model = loaded.value.model;
+  if (find_plan(directory))  // a study of an early version may have none
+    album.add_plot("influence",
+                   [&](const fs::path& name) { return plot_influence(study, read_tables(directory), loaded, name); });
   album.add("hit_probability",
             hit_probability_sheet(study, model.terrain, model.slide, model.targets, structures_of(model)));
   for (const std::string which : {"first", "worst"}) {

@@ -45,6 +45,10 @@ class PropertyFields {
 
   const PropertyLaws& laws() const { return laws_; }
   std::size_t terms() const { return coefficients(blocks_) + data(); }
+  /// The blocks of xi, the errors of data excepted.
+  const std::vector<PropertyBlock>& blocks() const { return blocks_; }
+  /// Coefficients of a field that are of the sampler, that of the nugget excepted.
+  std::size_t modes() const { return field_ ? field_->modes() : 0; }
   /// FieldSpec::trend, which values() do not have: it depends on the surface of the soil [rad/m].
   double trend() const { return trend_; }
   /// Number of data; those on one property at one point count once.

@@ -1,13 +1,10 @@
 #include "random_field/stream.hpp"
 
-#include <Random123/philox.h>
-
 #include <algorithm>
 #include <bit>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -16,18 +13,6 @@ namespace talus {
 namespace {
 
 std::uint32_t low(std::uint64_t word) { return static_cast<std::uint32_t>(word); }
-std::uint32_t high(std::uint64_t word) { return static_cast<std::uint32_t>(word >> 32); }
-
-/// The middle of one of 2^52 equal intervals of (0, 1): neither 0 nor 1 can come out.
-double unit(std::uint32_t lo, std::uint32_t hi) {
-  const std::uint64_t word = (static_cast<std::uint64_t>(hi) << 32) | lo;
-  return (static_cast<double>(word >> 12) + 0.5) * 0x1p-52;
-}
-
-/// A standard normal number from two uniform ones (Box & Muller 1958).
-double normal(const std::array<double, 2>& uniform) {
-  return std::sqrt(-2 * std::log(uniform[0])) * std::cos(2 * std::numbers::pi * uniform[1]);
-}
 
 /// A coordinate in whole micrometres.
 std::uint64_t micrometres(double x) { return static_cast<std::uint64_t>(std::llround(x * 1e6)); }
@@ -46,20 +31,10 @@ std::uint64_t stratum(std::uint64_t seed, std::uint64_t realizations, std::uint6
 
 }  // namespace
 
-std::array<double, 2> uniforms(std::uint64_t seed, std::uint64_t index, std::uint32_t mode, Stream stream) {
-  const r123::Philox4x32::key_type key = {{low(seed), high(seed)}};
-  const r123::Philox4x32::ctr_type counter = {{mode, static_cast<std::uint32_t>(stream), low(index), high(index)}};
-  const r123::Philox4x32::ctr_type words = r123::Philox4x32()(counter, key);
-  return {unit(words[0], words[1]), unit(words[2], words[3])};
-}
-
-double standard_normal(std::uint64_t seed, std::uint64_t realization, std::uint32_t mode, std::uint32_t field) {
-  return normal(uniforms(seed, realization, mode, stream_of(Stream::field, field)));
-}
-
 double white_noise(double key, Vec2 x) {
   if (key == 0) return 0;
-  return normal(uniforms(std::bit_cast<std::uint64_t>(key), micrometres(x.x), low(micrometres(x.y)), Stream::nugget));
+  return normal_of(
+      uniforms(std::bit_cast<std::uint64_t>(key), micrometres(x.x), low(micrometres(x.y)), Stream::nugget));
 }
 
 std::vector<double> stratified_normals(std::uint64_t seed, std::uint64_t realizations, std::uint64_t realization,

@@ -58,6 +58,20 @@ std::vector<HazardClass> classes_of(const Json& plan) {
   return classes;
 }
 
+Json draws_json(const std::vector<DrawnNumbers>& draws) {
+  Json all = Json::array();
+  for (const DrawnNumbers& of : draws) all.push_back({{"name", of.name}, {"key", of.key}, {"count", of.count}});
+  return all;
+}
+
+/// Plans of earlier versions have none.
+std::vector<DrawnNumbers> draws_of(const Json& plan) {
+  std::vector<DrawnNumbers> draws;
+  for (const Json& of : plan.value("draws", Json::array()))
+    draws.push_back({.name = of.at("name"), .key = of.at("key"), .count = of.at("count")});
+  return draws;
+}
+
 Json to_json(const Plan& plan) {
   Json json = {
       {"program", "talus"},
@@ -77,6 +91,7 @@ Json to_json(const Plan& plan) {
       {"histogram_edges_m", plan.study.histogram_edges}};
   if (!plan.study.hazard_classes.empty()) json["hazard_classes"] = classes_json(plan.study.hazard_classes);
   if (!plan.targets.empty()) json["targets"] = targets_json(plan.targets);
+  if (!plan.draws.empty()) json["draws"] = draws_json(plan.draws);
   return json;
 }
 
@@ -89,7 +104,8 @@ Plan from_json(const Json& json) {
             .seed = json.at("seed"),
             .study = {},
             .targets = targets_of(json),
-            .earlier = json.value("earlier_case_hashes", std::vector<std::string>())};
+            .earlier = json.value("earlier_case_hashes", std::vector<std::string>()),
+            .draws = draws_of(json)};
   StudySpec& study = plan.study;
   study.realizations = json.at("realizations");
   study.sampling = json.at("sampling") == sampling_names[1] ? Sampling::latin_hypercube : Sampling::monte_carlo;

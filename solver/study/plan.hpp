@@ -38,6 +38,15 @@ struct StudySpec {
   bool operator==(const StudySpec&) const = default;
 };
 
+/// Independent standard normal numbers that every realization draws: the leading coefficients of a field, or the one
+/// of a property that is drawn once.
+struct DrawnNumbers {
+  std::string name;        ///< of the property: "friction", "cohesion of clay"
+  std::uint32_t key = 0;   ///< number of the field, as standard_normal() takes it
+  std::int64_t count = 0;  ///< coefficients, the most important first; 0: they have no such order
+  bool operator==(const DrawnNumbers&) const = default;
+};
+
 struct Plan {
   std::string title;
   CaseIdentity of;      ///< of the resolved case
@@ -46,6 +55,7 @@ struct Plan {
   StudySpec study;                        ///< `study.seed` is not used
   std::vector<TargetName> targets = {};   ///< of the case, in its order
   std::vector<std::string> earlier = {};  ///< hashes of the case with earlier ends, whose runs at rest are kept
+  std::vector<DrawnNumbers> draws = {};   ///< what a realization draws; empty: nothing, or not known
 };
 
 /// The plan of the study in `directory`, or nothing where there is none.

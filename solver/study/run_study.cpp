@@ -52,6 +52,7 @@ class StudyRunner {
   std::unique_ptr<executor::Executor> executor_;
   FileDescriptor workers_lock_;
   std::int64_t made_ = 0, run_again_ = 0;
+  std::optional<ControlledMean> regression_;  ///< of the leading measure when tables were last written
   Clock::time_point begin_ = Clock::now(), reported_ = begin_;
 };
 
@@ -81,7 +82,8 @@ void StudyRunner::publish() {
       for (const auto& [index, record] : std::as_const(store_).records(kind)) take(record);
     };
   };
-  talus::publish(paths_, plan_, source(RunKind::realization), source(RunKind::replicate));
+  const StudySummary summary = talus::publish(paths_, plan_, source(RunKind::realization), source(RunKind::replicate));
+  if (const RegressionSummary of = summary.regression(leading_measure); of.done()) regression_ = of.mean;
 }
 
 void StudyRunner::note_event(const RunEvent& event) {
@@ -146,6 +148,7 @@ void StudyRunner::report(Engine& engine, bool now) {
                    .elapsed = std::chrono::duration<double>(Clock::now() - begin_).count(),
                    .mean = estimator.mean(),
                    .mean_half_width = estimator.mean_half_width(),
+                   .leading_mean = regression_,
                    .pending_reason = engine.executor().pending_reason(plan_.of.hash)});
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "executor/executor.hpp"
+#include "statistics/controlled_mean.hpp"
 #include "study/outcome.hpp"
 #include "study/plan.hpp"
 #include "study/run_key.hpp"
@@ -26,10 +27,11 @@ struct Progress {
   std::int64_t made_now = 0;       ///< runs ended since this process began
   std::int64_t run_again = 0;      ///< runs of this process that crashed or hung and were run again
   int running = 0;
-  double elapsed = 0.0;                        ///< since this process began [s]
-  std::optional<double> mean = {};             ///< influence zone [m]
-  std::optional<double> mean_half_width = {};  ///< of its 95 % interval [m]
-  std::string pending_reason = {};             ///< why no run is under way, where that is known
+  double elapsed = 0.0;                             ///< since this process began [s]
+  std::optional<double> mean = {};                  ///< influence zone [m]
+  std::optional<double> mean_half_width = {};       ///< of its 95 % interval [m]
+  std::optional<ControlledMean> leading_mean = {};  ///< of the leading measure by regression, a while ago [m]
+  std::string pending_reason = {};                  ///< why no run is under way, where that is known
 };
 
 /// How to run a study; none of it changes a result.

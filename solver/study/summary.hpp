@@ -11,6 +11,7 @@
 #include "study/plan.hpp"
 #include "study/quality_summary.hpp"
 #include "study/record.hpp"
+#include "study/regression_summary.hpp"
 #include "study/target_summary.hpp"
 #include "support/json.hpp"
 #include "support/measures.hpp"
@@ -26,6 +27,8 @@ struct MeasureSample {
   std::int64_t failed = 0;
   QualityCounts quality;
   bool complete = false;  ///< every realization of the study has ended
+  /// Of `values`, their realizations; empty: not asked for, and the mean is the plain one.
+  std::vector<std::int64_t> realizations = {};
 };
 
 /// Takes in the records of a study one by one and gives study.json (schemas/study.schema.json). Holds 8 bytes a measure
@@ -44,6 +47,8 @@ class StudySummary {
   /// The content of study.json.
   Json json() const;
   MeasureSample sample(const Measure& measure) const;
+  /// The mean of a measure by regression on what was drawn.
+  RegressionSummary regression(const Measure& measure) const;
   /// @param target  index into Plan::targets
   TargetSample target_sample(std::size_t target) const;
 
@@ -60,12 +65,15 @@ class StudySummary {
   Json realizations_json() const;
   Json mean_phi_json() const;
   Json replicates_json() const;
+  /// Numbers that numbers_of_all() has come with their regression, where there is one.
+  Json target_entry(std::size_t target) const;
 
   Plan plan_;
   StopRule stop_;
-  std::array<std::vector<double>, measure_table.size()> samples_;   ///< of the done ones, in order of index
+  std::array<std::vector<double>, measure_table.size()> samples_;   ///< of the done ones; NaN: no value
   std::array<std::vector<double>, measure_table.size()> censored_;  ///< of samples_, the lower bounds
   std::vector<std::vector<TargetOutcome>> targets_;                 ///< by target, of the done ones, in order of index
+  std::vector<std::int64_t> indices_;                               ///< of the done ones, in order
   std::vector<double> phi_;                                         ///< mean friction angles [deg]
   QualitySummary quality_;
   Json failures_ = Json::array();
@@ -83,6 +91,9 @@ class StudySummary {
 /// @param runs   in order of index; at most one per realization
 /// @param floor  replicates of realization 0 that differ by rounding-size changes only, in order
 StudySummary summary_of(const Plan& plan, const std::vector<Record>& runs, const std::vector<Record>& floor);
+
+/// The regression of a sample that knows its realizations.
+RegressionSummary regress(const Plan& plan, const MeasureSample& sample);
 
 /// The bins to count in: given edges, so many equal bins, or, with neither, those of study.json.
 struct Bins {

@@ -139,6 +139,16 @@ Json target_json(const TargetSample& sample, const std::vector<HazardClass>& cla
   return entry;
 }
 
+std::vector<double> numbers_of_all(const TargetSample& sample, const TargetNumber& number) {
+  std::vector<double> values;
+  for (const TargetOutcome& outcome : sample.outcomes) {
+    const double value = outcome.*number.member;
+    if (!outcome.arrives || outcome.open || std::isnan(value)) return {};
+    values.push_back(value);
+  }
+  return values;
+}
+
 std::optional<StudyQuantity> find_quantity(const std::string& name, const std::vector<TargetName>& targets) {
   if (const Measure* measure = find_measure(name)) return StudyQuantity{.measure = measure};
   for (std::size_t k = 0; k < targets.size(); ++k) {

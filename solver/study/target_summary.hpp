@@ -16,8 +16,9 @@ namespace talus {
 /// The outcomes of all realizations at one target.
 struct TargetSample {
   TargetName of;
-  std::vector<TargetOutcome> outcomes;  ///< of the realizations done, in order of index
-  std::int64_t failed = 0;              ///< realizations without an outcome
+  std::vector<TargetOutcome> outcomes;          ///< of the realizations done, in order of index
+  std::int64_t failed = 0;                      ///< realizations without an outcome
+  std::vector<std::int64_t> realizations = {};  ///< of the outcomes; empty: not known
 };
 
 /// P(the slide reaches the target): runs that failed, and those that ended before it was decided (TargetOutcome::open),
@@ -33,6 +34,8 @@ std::optional<std::size_t> hazard_class(const TargetOutcome& outcome, const std:
 
 /// The entry of a target in study.json.
 Json target_json(const TargetSample& sample, const std::vector<HazardClass>& classes = {});
+/// The number of each realization, where every one done has its final number: each reached the target, none is open.
+std::vector<double> numbers_of_all(const TargetSample& sample, const TargetNumber& number);
 
 /// What of a study a question asks for: a measure, a target, or a number of a target.
 struct StudyQuantity {

@@ -1,4 +1,5 @@
 #include "cli/progress.hpp"
+#include "statistics/stream.hpp"
 #include "studies.hpp"
 
 using namespace talus;
@@ -27,6 +28,13 @@ TEST(Progress, SaysWhereTheStudyStands) {
             "0/8 done, 0 failed, 4 running, waits for rain");
   EXPECT_EQ(progress_line(half),
             "3/8 done, 1 failed, mean farthest particle 34.12 +/- 0.50 m, 40 s left, 2 running, 360/h");
+  Progress regressed{.planned = 8};
+  regressed.leading_mean.emplace();
+  regressed.leading_mean->mean = 30.25;
+  regressed.leading_mean->standard_error = 0.125;
+  regressed.leading_mean->student = 2.0;
+  EXPECT_EQ(progress_line(regressed),
+            "0/8 done, 0 failed, 0 running; 99 % of the mass: 30.25 +/- 0.25 m by regression");
   EXPECT_FALSE(time_left({.planned = 8}));
   EXPECT_DOUBLE_EQ(*time_left(half), (8 - 3 - 1 + 2 - 2) * 60.0 / 6.0);
 }
@@ -48,6 +56,20 @@ TEST(Progress, SummaryNamesTheNumbers) {
   EXPECT_NE(text.find("\ninfluence_zone_m: the farthest particle, the paper's influence zone\n"), std::string::npos);
   EXPECT_NE(text.find("\nfront_at_thickness_m: where the deposit is 0.6 m thick\n"), std::string::npos) << text;
   EXPECT_NE(summary_table(summarize(p, {}, {})).find("0 done"), std::string::npos);
+}
+
+TEST(Progress, ReportSaysTheMeanByRegressionAndWhatMovesIt) {
+  EXPECT_EQ(regression_text(summarize(plan(4), {done(0, 34.0)}, {})),
+            "no mean by regression: the plan of this study does not say what is drawn\n");
+  Plan p = plan(20);
+  p.draws = {{"friction", 0, 5}};
+  std::vector<Record> runs;
+  for (std::int64_t i = 0; i < 20; ++i)
+    runs.push_back(done(i, 30.0 - 2.0 * standard_normal(p.seed, static_cast<std::uint64_t>(i), 0)));
+  const std::string text = regression_text(summarize(p, runs, {}));
+  EXPECT_NE(text.find("\nfront_mass_99_m         29.300  [29.300, 29.300]"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nvariance of front_mass_99_m explained by friction 100 % [100, 100]\n"), std::string::npos);
+  EXPECT_NE(text.find("m per standard deviation: friction 1 -2.000 [-2.000, -2.000]"), std::string::npos) << text;
 }
 
 TEST(Progress, HistogramInText) {

@@ -9,6 +9,8 @@
 #include "io/result_json.hpp"
 #include "io/vtkhdf.hpp"
 #include "reading.hpp"
+#include "statistics/stream.hpp"
+#include "study/plan.hpp"
 #include "support/error.hpp"
 #include "temporary_directory.hpp"
 
@@ -173,6 +175,43 @@ TEST(Figures, AStudyIsDrawnFromItsFiles) {
                                                     "friction_angle_worst.svg",
                                                     "friction_angle_worst.png"}));
   for (const fs::path& path : drawn) EXPECT_TRUE(fs::exists(path)) << path;
+}
+
+/// A study of a slide with a random field, whose front follows its first coefficient.
+Plan write_study_of_a_field(const fs::path& directory) {
+  const auto document = nlohmann::ordered_json::parse(R"({
+    "title": "Block", "particle_spacing_m": 0.5,
+    "terrain": {"bed_m": [[0, 0], [20, 0]]},
+    "slide": {"outlines": [{"outline_m": [[0, 0], [4, 0], [4, 3], [0, 3]]}]},
+    "material": {"density_kg_m3": 2000, "friction_angle_deg": 25},
+    "time": {"end_s": 3},
+    "random_field": {"correlation_length_m": 4, "log_stdev": 0.2, "terms": 8},
+    "study": {"realizations": 40, "seed": 42}})");
+  const LoadedCase loaded = load_case(document, directory);
+  write_file_atomically(directory / "case.resolved.json", loaded.resolved.dump(2));
+  const Plan plan = make_plan(loaded, 42, "0.1.0");
+  write_plan(directory, plan);  // as an earlier version did: without the draws
+  std::vector<Record> records = test::example_records(40, true);
+  for (Record& r : records)
+    r.measures.front_mass_99 =
+        30 - standard_normal(42, static_cast<std::uint64_t>(r.index), 0) + 1e-3 * r.measures.influence_zone;
+  test::write_example_study(directory, plan, records, {});
+  return plan;
+}
+
+TEST(Figures, SoilThatMovesTheFrontIsDrawnWhereThereIsARegression) {
+  const test::TemporaryDirectory directory;
+  Plan plan = write_study_of_a_field(directory.path());
+  const auto has_influence = [&] {
+    const std::vector<std::string> drawn = names(plot_study(directory.path()));
+    return std::ranges::count(drawn, "influence.svg") + std::ranges::count(drawn, "influence.png");
+  };
+  EXPECT_EQ(has_influence(), 2);
+  const std::string svg = read_file(directory / "figures/influence.svg", 10'000'000);
+  EXPECT_NE(svg.find("friction: 100 % [100, 100] of the variance"), std::string::npos);
+  plan.study.sampling = Sampling::latin_hypercube;
+  write_plan(directory.path(), plan);
+  EXPECT_EQ(has_influence(), 0);
 }
 
 // The picture follows the data: one more realization in a bin is another picture.
