@@ -9,10 +9,10 @@ namespace {
 
 using Column = Regression::Column;
 
-constexpr double tail = 0.025;  // each side of a two-sided 95 % interval
+constexpr double each_side = 0.025;  // probability beyond each end of a 95 % interval
 
 double student(double freedom) {
-  return boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), tail));
+  return boost::math::quantile(boost::math::complement(boost::math::students_t(freedom), each_side));
 }
 
 double dot(std::span<const double> a, std::span<const double> b) {

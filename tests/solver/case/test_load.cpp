@@ -178,7 +178,10 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
                           {"precision", "double"},
                           {"cfl", 0.13}};
   document["walls"] = {{"contact", "approaching"}, {"slip", "free_slip"}, {"max_velocity_ratio", 14}, {"layers", 15}};
-  document["time"] = {{"end_s", 16}, {"max_step_s", 17}, {"stop_at_rest", {{"speed_m_s", 18}, {"hold_s", 19}}}};
+  document["time"] = {{"end_s", 16},
+                      {"max_step_s", 17},
+                      {"snapshots_exact", true},
+                      {"stop_at_rest", {{"speed_m_s", 18}, {"hold_s", 19}}}};
   const Model m = test::load(document).value.model;
   EXPECT_EQ(m.materials[0], (Material{"m", 1, 2 * std::numbers::pi / 180, 3, 4}));
   EXPECT_EQ(m.g, (Vec2{0, -5}));
@@ -190,7 +193,7 @@ TEST(LoadCase, EveryNumberReachesItsMember) {
                                   InitialPressure::stress_free, Integrator::leapfrog, Precision::full, 0.13}));
   EXPECT_EQ(m.walls, (Walls{WallContact::approaching, 14, 15}));
   EXPECT_EQ(m.boundaries.at(0).slip, WallSlip::free_slip);
-  EXPECT_EQ(m.time, (TimeControl{16, {}, 17.0, {}, StopAtRest{18, 19}}));
+  EXPECT_EQ(m.time, (TimeControl{16, {}, 17.0, {}, true, StopAtRest{18, 19}}));
 }
 
 TEST(LoadCase, FieldAndStudyReachTheirMembers) {

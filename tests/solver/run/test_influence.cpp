@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint64_t seed = 3;
 
-Case slope_with(const Json& field) {
+Case layered_slope(const Json& field) {
   Json document = {{"title", "slope"},
                    {"particle_spacing_m", 0.5},
                    {"terrain", {{"bed_m", {{0, 4}, {8, 0}, {60, 0}}}}},
@@ -43,7 +43,7 @@ TEST(DrawnNumbers, AreThoseThatARunUses) {
                                         {{"friction", {{"cov", 0.2}}},
                                          {"cohesion", {{"mean_kPa", 2}, {"cov", 0.4}, {"layers", "independent"}}},
                                          {"viscosity", {{"mean_Pa_s", 500}, {"cov", 0.3}, {"varies", "once"}}}}}}}) {
-    const Case c = slope_with(field);
+    const Case c = layered_slope(field);
     const std::vector<DrawnNumbers> draws = drawn_numbers(c);
     const Strength soil =
         strength(c.model, c.field, c.study, plan_particles(c.model), {.seed = seed, .realization = 7});
@@ -53,17 +53,17 @@ TEST(DrawnNumbers, AreThoseThatARunUses) {
 }
 
 TEST(DrawnNumbers, LeaveOutTheNuggetAndNameWhatHasNoOrder) {
-  EXPECT_EQ(drawn_numbers(slope_with({{"log_stdev", 0.2}, {"nugget", 0.1}})).at(0).count, 6);
-  const auto embedded = drawn_numbers(slope_with({{"log_stdev", 0.2}, {"sampler", "circulant_embedding"}}));
+  EXPECT_EQ(drawn_numbers(layered_slope({{"log_stdev", 0.2}, {"nugget", 0.1}})).at(0).count, 6);
+  const auto embedded = drawn_numbers(layered_slope({{"log_stdev", 0.2}, {"sampler", "circulant_embedding"}}));
   EXPECT_EQ(embedded.at(0).name, "friction");
   EXPECT_EQ(embedded.at(0).count, 0);
-  EXPECT_TRUE(drawn_numbers(slope_with({{"log_stdev", 0.0}})).empty());
+  EXPECT_TRUE(drawn_numbers(layered_slope({{"log_stdev", 0.0}})).empty());
 }
 
 // Where the quantity is Z(x0) itself, its influence at x is Cov(Z(x0), Z(x)) / stdev(Z(x)): the standard deviation at
 // x0, and less elsewhere. A linear quantity leaves no residual, so the intervals have no width.
 TEST(Influence, OfTheFieldAtAPointIsItsCovariance) {
-  const Case c = slope_with({{"log_stdev", 0.2}});
+  const Case c = layered_slope({{"log_stdev", 0.2}});
   const std::vector<Vec2> points{{2.0, 5.0}, {4.0, 3.5}, {7.0, 1.0}};
   const RandomField field = make_field(c.model, *c.field);
   Plan plan{.seed = seed, .draws = drawn_numbers(c)};

@@ -12,15 +12,15 @@ namespace {
 using Columns = std::vector<std::vector<double>>;
 const std::vector<std::size_t> groups{0, 1, 0};
 
-struct Draws {
+struct LinearDraws {
   std::vector<double> y;
   Columns controls;
 };
 
 /// y = 2 xi_0 - xi_1 + xi_2 + noise: variances 4 + 1 in group 0, 1 in group 1, 2 of the noise; 8 in all.
-Draws draws(std::size_t n, std::mt19937_64& random) {
+LinearDraws linear_draws(std::size_t n, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  Draws d{.y = std::vector<double>(n), .controls = Columns(3, std::vector<double>(n))};
+  LinearDraws d{.y = std::vector<double>(n), .controls = Columns(3, std::vector<double>(n))};
   for (std::size_t i = 0; i < n; ++i) {
     for (auto& column : d.controls) column[i] = normal(random);
     d.y[i] = 10 + 2 * d.controls[0][i] - d.controls[1][i] + d.controls[2][i] + std::sqrt(2.0) * normal(random);
@@ -28,7 +28,7 @@ Draws draws(std::size_t n, std::mt19937_64& random) {
   return d;
 }
 
-std::vector<VarianceShare> shares(const Draws& d) {
+std::vector<VarianceShare> shares(const LinearDraws& d) {
   Regression all(d.y);
   for (std::size_t k = 0; k < d.controls.size(); ++k) all.add(d.controls[k], k);
   return variance_shares(all, d.y, groups, 3);
@@ -36,7 +36,7 @@ std::vector<VarianceShare> shares(const Draws& d) {
 
 TEST(VarianceShares, OfAnExactModelAreThoseOfItsSlopes) {
   std::mt19937_64 random(1);
-  Draws d = draws(40, random);
+  LinearDraws d = linear_draws(40, random);
   for (std::size_t i = 0; i < d.y.size(); ++i) d.y[i] = 10 + 2 * d.controls[0][i] - d.controls[1][i] + d.controls[2][i];
   const auto found = shares(d);
   EXPECT_NEAR(found[0].value, 5.0 / 6, 1e-9);
@@ -53,7 +53,7 @@ TEST(VarianceShares, HoldTheTrueSharesAsOftenAsTheySay) {
   std::mt19937_64 random(2);
   std::vector<double> held(2, 0.0), mean(2, 0.0);
   for (int s = 0; s < samples; ++s) {
-    const auto found = shares(draws(60, random));
+    const auto found = shares(linear_draws(60, random));
     for (std::size_t g = 0; g < 2; ++g) {
       held[g] += *found[g].ci95.lo <= truth[g] && truth[g] <= *found[g].ci95.hi ? 1.0 / samples : 0.0;
       mean[g] += found[g].value / samples;
