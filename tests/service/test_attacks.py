@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Clients that take what they can do not keep the operator and the next client from the service."""
 
+import select
 import socket
 import subprocess
 import time
@@ -9,6 +10,7 @@ from attacks import ATTACKS, ECHO, LONG_STRING, asked, get, peak_memory, post, u
 from daemon import SANITIZED, TALUS, TALUSD, Daemon, ServiceTest, main, study
 
 SECONDS = 1.5
+SHORT = {"inputs": {"s": "a", "pause": 0.01}}
 PATIENCE = 30.0  # against hanging; how fast the answers come is measured by attacks.py
 
 
@@ -52,6 +54,15 @@ class Limits(ServiceTest):
         self.addCleanup(s.close)
         s.sendall(sent)
         return s
+
+    def hold(self, request, count, **token):
+        """Sends `count` requests that wait, until a short one beside them is refused; their connections and the refusal."""
+        held = [self.connect(request) for _ in range(count)]
+        while (reply := self.daemon.post(ECHO, SHORT, **token)).status == 200:
+            for k, s in enumerate(held):
+                if select.select([s], [], [], 0.02)[0]:  # a short one came first, and this one was refused
+                    held[k] = self.connect(request)
+        return held, reply
 
     def test_the_oldest_idle_connection_gives_way(self):
         self.start("--max-connections", 16, "--max-connections-each", 16)
@@ -107,13 +118,10 @@ class Limits(ServiceTest):
     def test_work_ends_when_its_client_leaves(self):
         """A wait of 60 s frees its place."""
         self.start("--max-streams", 1)
-        s = self.connect(post(ECHO, b'{"inputs": {"s": "a", "pause": 60}}'))
-        short = {"inputs": {"s": "a", "pause": 0.01}}
-        while self.daemon.post(ECHO, short).status == 200:
-            time.sleep(0.05)
-        s.close()
+        held, _ = self.hold(post(ECHO, b'{"inputs": {"s": "a", "pause": 60}}'), 1)
+        held[0].close()
         deadline = time.monotonic() + 30
-        while (status := self.daemon.post(ECHO, short).status) == 503 and time.monotonic() < deadline:
+        while (status := self.daemon.post(ECHO, SHORT).status) == 503 and time.monotonic() < deadline:
             time.sleep(0.05)
         self.assertEqual(status, 200)
 
@@ -126,14 +134,10 @@ class Limits(ServiceTest):
         (self.dir / "tokens").write_text("".join(lines))
         self.start("--tokens", self.dir / "tokens", "--max-streams", 4, "--max-streams-each", 2)
         wait = b'{"inputs": {"s": "a", "pause": 20}}'
-        for _ in range(2):
-            request = post(ECHO, wait).replace(b"\r\n\r\n", b"\r\nAuthorization: Bearer %s\r\n\r\n" % tokens[0].encode())
-            self.connect(request)
-        short = {"inputs": {"s": "a", "pause": 0.01}}
-        while (reply := self.daemon.post(ECHO, short, token=tokens[0])).status == 200:
-            time.sleep(0.05)
+        request = post(ECHO, wait).replace(b"\r\n\r\n", b"\r\nAuthorization: Bearer %s\r\n\r\n" % tokens[0].encode())
+        _, reply = self.hold(request, 2, token=tokens[0])
         self.problem(reply, 503)
-        self.assertEqual(self.daemon.post(ECHO, short, token=tokens[1]).status, 200)
+        self.assertEqual(self.daemon.post(ECHO, SHORT, token=tokens[1]).status, 200)
 
     def test_starts_with_little(self):
         """512 MiB of address space and 100 processes."""
