@@ -69,8 +69,8 @@ def shape(snapshots):
     start, moved = snapshots.position(0), np.hypot(*snapshots.field("displacement", last)[:, :2].T)
     slipped, end = start[moved > 1.0], snapshots.position(last)
     return {"share": float(np.mean(moved > 1.0)), "from_x_m": float(slipped[:, 0].min()), "deepest_m": float(HEIGHT - slipped[:, 1].min()), "farthest_m": float(moved.max()),
-            "softened": float(np.mean(snapshots.field("cohesion", last) < 19e3)),
-            "end": {"x_m": np.round(end[:, 0], 2).tolist(), "y_m": np.round(end[:, 1], 2).tolist(), "cohesion_kPa": np.round(snapshots.field("cohesion", last) / 1e3, 1).tolist()}}
+            "softened": float(np.mean(snapshots.field("cohesion_Pa", last) < 19e3)),
+            "end": {"x_m": np.round(end[:, 0], 2).tolist(), "y_m": np.round(end[:, 1], 2).tolist(), "cohesion_kPa": np.round(snapshots.field("cohesion_Pa", last) / 1e3, 1).tolist()}}
 
 
 def draw(end, directory):
