@@ -91,9 +91,10 @@ Found coverage(const StudyRecord& record, std::size_t measure) {
   return found;
 }
 
-// 93 to 97 % is asked for. Not met: the 99 % front with five modes, 97.5 %, on the careful side; it must stay
-// below 98.5 %. By 4,000 subsets a frequency is known to 0.0035 z; the record itself adds about as much as some 40
-// disjoint subsets would: the limits are met by the figures of these fixed records.
+// 93 to 97 % is asked for. Not met: the 99 % front with five modes, whose interval is too wide; it must stay what is
+// stated, 97.5 %, within z = 3 of its sampling error of 0.0025. By 4,000 subsets a frequency is known to 0.0035 z; the
+// record itself adds about as much as some 40 disjoint subsets would: the limits are met by the figures of these fixed
+// records.
 TEST(RecordedCoverage, OfTheMeanByRegression) {
   const StudyRecord records[] = {
       {"five-modes", {{"friction", 0, 5}}, 2.0},
@@ -105,9 +106,12 @@ TEST(RecordedCoverage, OfTheMeanByRegression) {
       const Found found = coverage(record, k);
       std::printf("%-17s %-21s regression %.1f %%, plain %.1f %%, gain %.1f\n", record.name, measures[k],
                   100 * found.regression, 100 * found.plain, found.gain);
-      EXPECT_GE(found.regression, 0.93) << record.name << " " << measures[k];
-      const bool not_met = record.name == std::string("five-modes") && k == 0;
-      EXPECT_LE(found.regression, not_met ? 0.985 : 0.97) << record.name << " " << measures[k];
+      if (record.name == std::string("five-modes") && k == 0) {
+        EXPECT_NEAR(found.regression, 0.975, 3 * 0.0025);
+      } else {
+        EXPECT_GE(found.regression, 0.93) << record.name << " " << measures[k];
+        EXPECT_LE(found.regression, 0.97) << record.name << " " << measures[k];
+      }
       EXPECT_GE(found.gain, record.least_gain) << record.name << " " << measures[k];
     }
 }
